@@ -1,0 +1,112 @@
+#pragma once
+
+#include <optional>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "core/estimation/body_model.h"
+#include "core/estimation/gravity_table.h"
+#include "core/geometry/error.h"
+#include "core/geometry/run_context.h"
+
+namespace skincal {
+
+/// Everything that one body is described by while it is being estimated. Indexes are positions in Skin::modules and
+/// in the list of views; nothing where a pose is unknown: what it belongs to then takes no part.
+struct BodyState {
+    std::vector<std::optional<Isometry3d>> T_r_u;          ///< per module
+    std::vector<std::optional<Isometry3d>> T_r_v;          ///< per view
+    std::vector<AccelerometerCalibration> accelerometers;  ///< per module
+    /// Unit vector against gravity in the body frame, [group][pose]; see AdjustmentInput::gravityGroup.
+    std::vector<std::vector<std::optional<Vector3d>>> up_r;
+};
+
+struct PixelObservation {
+    std::size_t view = 0;
+    std::size_t module = 0;
+    Vector2d pixel = Vector2d::Zero();
+    double sigma_px = 0.1;
+};
+
+struct PortPair {
+    std::size_t a = 0;
+    std::size_t b = 0;
+    Vector3d port_a = Vector3d::Zero();
+    Vector3d port_b = Vector3d::Zero();
+};
+
+/// The measurements in the form the adjustment wants them.
+struct AdjustmentInput {
+    const Skin* skin = nullptr;
+    const CameraModel* camera = nullptr;  ///< may be null where there are no pixels
+    const GravityTable* gravity = nullptr;
+    std::vector<PixelObservation> pixels;
+    std::vector<PortPair> links;
+    /// Modules of one group hung from the same gravity direction in every pose: all of them where the body was posed
+    /// as one rigid piece, each patch by itself where its joints moved between poses.
+    std::vector<std::size_t> gravityGroup;
+};
+
+struct AdjustmentOptions {
+    double accelerometerSigma = 0.03;   ///< m/s^2 per axis, where the reading brings none
+    double linkSigma = 0.5e-3;          ///< m, mechanical play of a link point
+    double biasSigma = 0.5;             ///< m/s^2, prior
+    double scaleSigma = 0.02;           ///< prior
+    double gravity = kStandardGravity;  ///< m/s^2 where the readings were taken
+    double pixelSigmaFloor_px = 0.03;   ///< no detection is believed better than this
+    /// Where a residual stops to count in full, in standard deviations (Cauchy); 0 for plain least squares.
+    double pixelLoss = 3;
+    double gravityLoss = 4;
+    double linkLoss = 4;
+    bool calibrateAccelerometers = true;
+    int maxIterations = 100;
+
+    [[nodiscard]] bool validate() const;
+};
+
+struct AdjustmentSummary {
+    bool usable = false;
+    int iterations = 0;
+    double initialCost = 0;
+    double finalCost = 0;
+    std::size_t residuals = 0;
+    std::size_t parameters = 0;
+};
+
+struct AdjustmentResult {
+    BodyState state;
+    AdjustmentSummary summary;
+};
+
+/// Least squares over pixels, gravity and link points at once (Ceres, sparse Cholesky):
+///   min  sum rho(|z - project(T_r_v^-1 T_r_u led)|^2/s^2) + sum rho(|a - (s g R_r_u^T up + b)|^2/s^2)
+///      + sum rho(|T_r_a p_a - T_r_b p_b|^2/s^2) + priors on bias and scale
+/// Gauge: `fixedView`, else `fixedModule`, keeps its pose; one of them must have one. With a fixed view the scale
+/// still comes from the ports and LED offsets of the modules.
+/// Fails with Cancelled, NotConverged (no usable step), TooFewPoints (nothing to adjust).
+[[nodiscard]] tl::expected<AdjustmentResult, CalibrationError> adjustBody(const AdjustmentInput& input, BodyState start,
+                                                                          std::optional<std::size_t> fixedView,
+                                                                          std::optional<std::size_t> fixedModule,
+                                                                          const AdjustmentOptions& options = {},
+                                                                          const RunContext& context = {});
+
+/// Cramer-Rao bound at `truth`: covariance (rotation vector in the body frame, then translation; rad, m) of the poses
+/// of the given views, in the order given, as one matrix. Plain least squares, same gauge rules as adjustBody.
+/// Fails with DegeneratePoints where the data do not fix all unknowns.
+[[nodiscard]] tl::expected<Eigen::MatrixXd, CalibrationError> viewPoseBound(
+    const AdjustmentInput& input, const BodyState& truth, const std::vector<std::size_t>& views,
+    std::optional<std::size_t> fixedView, std::optional<std::size_t> fixedModule, AdjustmentOptions options = {});
+
+/// The same for modules.
+[[nodiscard]] tl::expected<Eigen::MatrixXd, CalibrationError> modulePoseBound(
+    const AdjustmentInput& input, const BodyState& truth, const std::vector<std::size_t>& modules,
+    std::optional<std::size_t> fixedView, std::optional<std::size_t> fixedModule, AdjustmentOptions options = {});
+
+/// Residual measured minus predicted of one detection, px; nothing where a pose is missing or the LED lies behind.
+[[nodiscard]] std::optional<Vector2d> pixelResidual(const AdjustmentInput& input, const BodyState& state,
+                                                    const PixelObservation& observation);
+
+/// Up directions that fit the accelerometers best, given module rotations and calibrations: fills state.up_r.
+void estimateUpDirections(const AdjustmentInput& input, BodyState& state);
+
+}  // namespace skincal

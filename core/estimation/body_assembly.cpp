@@ -1,0 +1,218 @@
+#include "core/estimation/body_assembly.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace skincal {
+namespace {
+
+double rootMean(double squares, std::size_t count) {
+    return std::sqrt(squares / static_cast<double>(count));
+}
+
+void addModules(const Measurements& m, const SkinLayout& layout, const BodyEstimate& estimate, BodyModel& body) {
+    body.modules.resize(m.skin.modules.size());
+    for (std::size_t u = 0; u < body.modules.size(); ++u) {
+        BodyModule& module = body.modules[u];
+        module.id = m.skin.modules[u].id;
+        module.type = m.skin.templateOf(u).name;
+        module.T_body_module = estimate.T_r_u[u];
+        if (!estimate.accelerometers.empty())
+            module.accelerometer = estimate.accelerometers[u];
+    }
+    for (std::size_t k = 0; k < layout.patches.size(); ++k) {
+        const Patch& patch = layout.patches[k];
+        for (std::size_t i = 0; i < patch.modules.size(); ++i) {
+            BodyModule& module = body.modules[patch.modules[i]];
+            module.patch = patch.id;
+            module.T_patch_module = estimate.shapes[k].T_o_u[i];
+            if (module.T_body_module)
+                module.status = "placed";
+            else if (!estimate.shapes[k].T_o_u[i])
+                module.status = "orientation unknown: no usable gravity readings";
+            else
+                module.status = estimate.patchStatus[k];
+        }
+    }
+}
+
+void addPatches(const Measurements& m, const SkinLayout& layout, const BodyEstimate& estimate, BodyModel& body) {
+    for (std::size_t k = 0; k < layout.patches.size(); ++k) {
+        BodyPatch patch;
+        patch.id = layout.patches[k].id;
+        patch.origin = m.skin.modules[layout.patches[k].origin].id;
+        for (const std::size_t u : layout.patches[k].modules)
+            patch.modules.push_back(m.skin.modules[u].id);
+        patch.T_body_patch = estimate.T_r_o[k];
+        patch.status = estimate.patchStatus[k];
+        for (const std::size_t v : estimate.patchViews[k])
+            patch.views.push_back(m.views[v].name);
+        body.patches.push_back(std::move(patch));
+    }
+}
+
+void addLinks(const Measurements& m, const SkinLayout& layout, const BodyEstimate& estimate, BodyModel& body) {
+    double squares = 0;
+    double largest = 0;
+    std::size_t count = 0;
+    for (std::size_t l = 0; l < layout.verdicts.size(); ++l) {
+        const GraphLink& link = layout.graph.links()[l];
+        BodyLink out;
+        out.link = {m.skin.modules[link.a].id, link.a_port, m.skin.modules[link.b].id, link.b_port, link.decided};
+        out.kind = layout.verdicts[l].kind;
+        out.reason = layout.verdicts[l].explanation;
+        const auto& T_r_a = estimate.T_r_u[link.a];
+        const auto& T_r_b = estimate.T_r_u[link.b];
+        if (T_r_a && T_r_b) {
+            const Vector3d a = *T_r_a * m.skin.templateOf(link.a).ports[static_cast<std::size_t>(link.a_port)];
+            const Vector3d b = *T_r_b * m.skin.templateOf(link.b).ports[static_cast<std::size_t>(link.b_port)];
+            out.distance = (a - b).norm();
+            if (out.kind == LinkKind::Adjacent) {
+                squares += *out.distance * *out.distance;
+                largest = std::max(largest, *out.distance);
+                ++count;
+            }
+        }
+        body.links.push_back(std::move(out));
+    }
+    if (count > 0) {
+        body.quality.link_mismatch_rms = rootMean(squares, count);
+        body.quality.link_mismatch_max = largest;
+    }
+}
+
+void addViews(const Measurements& m, const AdjustmentInput& input, const BodyState& state, const BodyEstimate& estimate,
+              BodyModel& body) {
+    double allSquares = 0;
+    std::size_t allCount = 0;
+    std::vector<double> squares(m.views.size(), 0);
+    std::vector<std::size_t> counts(m.views.size(), 0);
+    for (std::size_t v = 0; v < m.views.size(); ++v) {
+        BodyView view;
+        view.name = m.views[v].name;
+        view.T_body_camera = estimate.T_r_v[v];
+        view.status = estimate.viewStatus[v];
+        body.views.push_back(std::move(view));
+    }
+    for (std::size_t i = 0; i < input.pixels.size(); ++i) {
+        const PixelObservation& o = input.pixels[i];
+        BodyObservation out;
+        out.module = m.skin.modules[o.module].id;
+        out.pixel = o.pixel;
+        out.residual = pixelResidual(input, state, o);
+        if (estimate.rejected[i]) {
+            out.verdict = ObservationVerdict::Rejected;
+            out.reason = estimate.rejectedReason[i];
+        } else if (!out.residual) {
+            out.verdict = ObservationVerdict::Rejected;
+            out.reason = estimate.T_r_v[o.view] ? "its module has no pose" : "its view has no pose";
+        } else {
+            squares[o.view] += out.residual->squaredNorm();
+            ++counts[o.view];
+        }
+        body.views[o.view].observations.push_back(std::move(out));
+    }
+    for (std::size_t v = 0; v < m.views.size(); ++v) {
+        for (const Undetected& missed : m.views[v].undetected) {
+            const auto verdict = missed.verdict == DetectionVerdict::Ambiguous ? ObservationVerdict::Ambiguous
+                                                                               : ObservationVerdict::NotFound;
+            body.views[v].observations.push_back({missed.module, std::nullopt, std::nullopt, verdict, missed.reason});
+        }
+        if (counts[v] > 0)
+            body.views[v].residual_rms_px = rootMean(squares[v], counts[v]);
+        allSquares += squares[v];
+        allCount += counts[v];
+    }
+    if (allCount > 0)
+        body.quality.residual_rms_px = rootMean(allSquares, allCount);
+}
+
+void addGravityResidual(const GravityTable& gravity, const AdjustmentInput& input, BodyState state, BodyModel& body) {
+    estimateUpDirections(input, state);
+    double squares = 0;
+    std::size_t count = 0;
+    for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
+        if (!state.T_r_u[u])
+            continue;
+        const AccelerometerCalibration& c = state.accelerometers[u];
+        for (const GravityTable::Entry& entry : gravity.of(u)) {
+            const auto& up = state.up_r[input.gravityGroup[u]][entry.pose];
+            if (!up)
+                continue;
+            const Vector3d a = kStandardGravity * (state.T_r_u[u]->linear().transpose() * *up);
+            squares += (entry.acceleration - c.bias - c.scale.cwiseProduct(a)).squaredNorm();
+            count += 3;
+        }
+    }
+    if (count > 0)
+        body.quality.gravity_residual_rms = rootMean(squares, count);
+}
+
+void judge(BodyModel& body) {
+    BodyQuality& quality = body.quality;
+    quality.modulesTotal = body.modules.size();
+    quality.modulesPlaced = static_cast<std::size_t>(std::count_if(
+        body.modules.begin(), body.modules.end(), [](const BodyModule& m) { return m.T_body_module.has_value(); }));
+    std::size_t used = 0;
+    std::size_t rejected = 0;
+    for (const BodyView& view : body.views) {
+        for (const BodyObservation& o : view.observations) {
+            used += o.verdict == ObservationVerdict::Used ? 1 : 0;
+            rejected += o.verdict == ObservationVerdict::Rejected ? 1 : 0;
+        }
+    }
+    if (rejected > 0)
+        quality.warnings.push_back(fmt::format("{} of {} detections rejected", rejected, used + rejected));
+    const double residual = quality.residual_rms_px.value_or(0);
+    const double gap = quality.link_mismatch_rms.value_or(0);
+    const bool half = 2 * rejected > used;
+    if (quality.modulesPlaced == 0 || residual > 5 || gap > 5e-3 || half)
+        quality.trust = Trust::NotToBeTrusted;
+    else if (quality.modulesPlaced < quality.modulesTotal || residual > 1 || gap > 1.5e-3 || rejected * 4 > used)
+        quality.trust = Trust::Usable;
+    else
+        quality.trust = Trust::Good;
+}
+
+}  // namespace
+
+std::vector<PixelObservation> flattenDetections(const Measurements& measurements) {
+    const auto index = measurements.skin.indexById();
+    std::vector<PixelObservation> pixels;
+    for (std::size_t v = 0; v < measurements.views.size(); ++v) {
+        for (const LedDetection& detection : measurements.views[v].found) {
+            const auto found = index.find(detection.module);
+            if (found != index.end())
+                pixels.push_back({v, found->second, detection.pixel, detection.sigma_px});
+        }
+    }
+    return pixels;
+}
+
+BodyModel assembleBody(const Measurements& measurements, const GravityTable& gravity, const SkinLayout& layout,
+                       const AdjustmentInput& input, const BodyEstimate& estimate) {
+    BodyModel body;
+    body.generator.method = estimate.method;
+    body.body_frame = estimate.bodyFrame;
+    body.templates = measurements.skin.templates;
+    body.quality.condition = estimate.condition;
+    body.quality.warnings = estimate.warnings;
+    body.quality.missing = estimate.missing;
+
+    BodyState state;
+    state.T_r_u = estimate.T_r_u;
+    state.T_r_v = estimate.T_r_v;
+    state.accelerometers = estimate.accelerometers;
+    state.accelerometers.resize(state.T_r_u.size());
+    addModules(measurements, layout, estimate, body);
+    addPatches(measurements, layout, estimate, body);
+    addLinks(measurements, layout, estimate, body);
+    addViews(measurements, input, state, estimate, body);
+    addGravityResidual(gravity, input, state, body);
+    judge(body);
+    return body;
+}
+
+}  // namespace skincal

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/estimation/body_adjustment.h"
+#include "core/estimation/measurements.h"
+#include "core/estimation/patch_shape.h"
+#include "core/estimation/skin_layout.h"
+
+namespace skincal {
+
+/// What a method hands over once its estimation is done; assembleBody makes the body model of it.
+struct BodyEstimate {
+    std::string method;
+    std::string bodyFrame = "first-view";
+    std::vector<std::optional<Isometry3d>> T_r_u;          ///< per module
+    std::vector<std::optional<Isometry3d>> T_r_o;          ///< per patch
+    std::vector<std::optional<Isometry3d>> T_r_v;          ///< per view
+    std::vector<PatchShape> shapes;                        ///< per patch
+    std::vector<std::string> patchStatus;                  ///< per patch: "placed", or why not
+    std::vector<std::string> viewStatus;                   ///< per view
+    std::vector<std::vector<std::size_t>> patchViews;      ///< per patch: views whose picture gave it a pose
+    std::vector<AccelerometerCalibration> accelerometers;  ///< per module; empty where not estimated
+    std::vector<bool> rejected;                            ///< per entry of AdjustmentInput::pixels
+    std::vector<std::string> rejectedReason;               ///< likewise
+    std::map<std::string, double> condition;
+    std::vector<std::string> warnings;
+    std::vector<std::string> missing;
+};
+
+/// All detections of known modules, in the order of the views.
+[[nodiscard]] std::vector<PixelObservation> flattenDetections(const Measurements& measurements);
+
+/// Fills in verdicts, residuals, link distances and the quality figures, and says whether to trust the result.
+[[nodiscard]] BodyModel assembleBody(const Measurements& measurements, const GravityTable& gravity,
+                                     const SkinLayout& layout, const AdjustmentInput& input,
+                                     const BodyEstimate& estimate);
+
+}  // namespace skincal

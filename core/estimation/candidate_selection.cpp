@@ -1,0 +1,195 @@
+#include "core/estimation/candidate_selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "core/estimation/edge_rotation.h"
+
+namespace skincal {
+namespace {
+
+using View = std::vector<std::size_t>;  // positions of one view's sightings
+
+/// Support that one statement about the view's rotation finds among the sightings: small is good.
+double disagreement(const std::vector<SightingCandidates>& sightings, const View& view,
+                    const std::vector<std::optional<Matrix3d>>& R_g_o, const Matrix3d& R_v_g, double limit) {
+    double cost = 0;
+    for (const std::size_t s : view) {
+        const auto& R = R_g_o[sightings[s].patch];
+        if (!R)
+            continue;
+        double best = 1;
+        for (const PatchPose& pose : sightings[s].poses) {
+            const double angle = rotationAngle(pose.T_v_o.linear().transpose() * R_v_g * *R);
+            // The cost of the picture counts a little, so that it decides where gravity does not.
+            const double picture =
+                0.05 * std::min(1.0, std::log(std::max(1.0, pose.cost / sightings[s].poses[0].cost)));
+            best = std::min(best, std::min(1.0, angle * angle / (limit * limit)) + picture);
+        }
+        cost += best * static_cast<double>(sightings[s].poses[0].inlierCount());
+    }
+    return cost;
+}
+
+void selectByGravity(const std::vector<SightingCandidates>& sightings, const View& view,
+                     const std::vector<std::optional<Matrix3d>>& R_g_o, const SelectionOptions& options,
+                     std::vector<Selection>& selections) {
+    double best = std::numeric_limits<double>::infinity();
+    std::optional<Matrix3d> R_v_g;
+    std::size_t voters = 0;
+    for (const std::size_t s : view) {
+        const auto& R = R_g_o[sightings[s].patch];
+        if (!R)
+            continue;
+        ++voters;
+        for (const PatchPose& pose : sightings[s].poses) {
+            const Matrix3d statement = pose.T_v_o.linear() * R->transpose();
+            const double cost = disagreement(sightings, view, R_g_o, statement, options.maxDisagreement_rad);
+            if (cost < best) {
+                best = cost;
+                R_v_g = statement;
+            }
+        }
+    }
+    if (voters < 2 || !R_v_g)
+        return;
+    for (const std::size_t s : view) {
+        const auto& R = R_g_o[sightings[s].patch];
+        if (!R)
+            continue;
+        double nearest = options.maxDisagreement_rad;
+        selections[s] = {};
+        for (std::size_t k = 0; k < sightings[s].poses.size(); ++k) {
+            const double angle = rotationAngle(sightings[s].poses[k].T_v_o.linear().transpose() * *R_v_g * *R);
+            if (angle < nearest) {
+                nearest = angle;
+                selections[s].candidate = k;
+            }
+        }
+    }
+}
+
+/// Votes of other views for the relative rotations that each candidate implies.
+std::vector<std::vector<double>> votesAcrossViews(const std::vector<SightingCandidates>& sightings,
+                                                  const std::map<std::size_t, View>& views, double limit) {
+    struct Statement {
+        std::size_t view, sightingA, candidateA, sightingB, candidateB;
+        Matrix3d R_a_b;
+    };
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<Statement>> byPair;
+    for (const auto& [v, view] : views) {
+        for (const std::size_t a : view) {
+            for (const std::size_t b : view) {
+                if (sightings[a].patch >= sightings[b].patch)
+                    continue;
+                for (std::size_t i = 0; i < sightings[a].poses.size(); ++i) {
+                    for (std::size_t k = 0; k < sightings[b].poses.size(); ++k)
+                        byPair[{sightings[a].patch, sightings[b].patch}].push_back(
+                            {v, a, i, b, k,
+                             sightings[a].poses[i].T_v_o.linear().transpose() * sightings[b].poses[k].T_v_o.linear()});
+                }
+            }
+        }
+    }
+    std::vector<std::vector<double>> votes(sightings.size());
+    for (std::size_t s = 0; s < sightings.size(); ++s)
+        votes[s].assign(sightings[s].poses.size(), 0);
+    for (const auto& [pair, statements] : byPair) {
+        for (const Statement& mine : statements) {
+            std::map<std::size_t, double> support;  // the best of each other view counts once
+            for (const Statement& other : statements) {
+                if (other.view == mine.view)
+                    continue;
+                const double angle = rotationAngle(mine.R_a_b.transpose() * other.R_a_b);
+                support[other.view] = std::max(support[other.view], 1 - std::min(1.0, angle / limit));
+            }
+            double sum = 0;
+            for (const auto& [view, value] : support)
+                sum += value;
+            votes[mine.sightingA][mine.candidateA] = std::max(votes[mine.sightingA][mine.candidateA], sum);
+            votes[mine.sightingB][mine.candidateB] = std::max(votes[mine.sightingB][mine.candidateB], sum);
+        }
+    }
+    return votes;
+}
+
+}  // namespace
+
+std::vector<Selection> selectCandidates(const std::vector<SightingCandidates>& sightings,
+                                        const std::vector<std::optional<Matrix3d>>& R_g_o,
+                                        const SelectionOptions& options) {
+    if (!options.validate())
+        throw std::logic_error("SelectionOptions out of range");
+    std::map<std::size_t, View> views;
+    for (std::size_t s = 0; s < sightings.size(); ++s) {
+        if (!sightings[s].poses.empty())
+            views[sightings[s].view].push_back(s);
+    }
+    const auto votes = votesAcrossViews(sightings, views, options.maxDisagreement_rad);
+
+    std::vector<Selection> selections(sightings.size());
+    for (std::size_t s = 0; s < sightings.size(); ++s) {
+        const auto& poses = sightings[s].poses;
+        if (poses.empty())
+            continue;
+        std::size_t best = 0;
+        for (std::size_t k = 1; k < poses.size(); ++k) {
+            if (votes[s][k] > votes[s][best] + 0.25)
+                best = k;
+        }
+        selections[s].candidate = best;
+        for (std::size_t k = 0; k < poses.size(); ++k) {
+            const bool asGood = votes[s][k] > votes[s][best] - 0.25;
+            if (k != best && asGood && poses[k].cost < options.decisiveCostRatio * poses[best].cost + 1e-12)
+                selections[s].undecided = true;
+        }
+    }
+    for (const auto& [v, view] : views)
+        selectByGravity(sightings, view, R_g_o, options, selections);
+    return selections;
+}
+
+GravityFrame alignPatchesByGravity(const std::vector<std::vector<std::optional<Vector3d>>>& up_o,
+                                   double maxDisagreement_rad) {
+    GravityFrame frame;
+    frame.R_g_o.resize(up_o.size());
+    // The reference is the patch that knows the most poses.
+    std::size_t reference = 0;
+    std::size_t mostPoses = 0;
+    for (std::size_t k = 0; k < up_o.size(); ++k) {
+        const auto known = static_cast<std::size_t>(
+            std::count_if(up_o[k].begin(), up_o[k].end(), [](const auto& up) { return up.has_value(); }));
+        if (known > mostPoses) {
+            mostPoses = known;
+            reference = k;
+        }
+    }
+    if (mostPoses < 2)
+        return frame;
+    double squares = 0;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < up_o.size(); ++k) {
+        std::vector<Vector3d> g;
+        std::vector<Vector3d> o;
+        for (std::size_t p = 0; p < up_o[k].size(); ++p) {
+            if (up_o[k][p] && up_o[reference][p]) {
+                g.push_back(*up_o[reference][p]);
+                o.push_back(*up_o[k][p]);
+            }
+        }
+        const auto rotation = estimateRelativeRotation(g, o);
+        // Unit vectors: the residual is an angle.
+        if (!rotation || rotation->residual_rms > maxDisagreement_rad)
+            continue;
+        frame.R_g_o[k] = rotation->R_c_n;
+        squares += rotation->residual_rms * rotation->residual_rms;
+        ++count;
+    }
+    frame.disagreement_rad = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
+    return frame;
+}
+
+}  // namespace skincal

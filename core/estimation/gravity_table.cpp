@@ -1,0 +1,45 @@
+#include "core/estimation/gravity_table.h"
+
+#include <algorithm>
+
+namespace skincal {
+
+GravityTable::GravityTable(const Skin& skin, std::span<const GravityReading> readings) : entries_(skin.modules.size()) {
+    for (const GravityReading& reading : readings)
+        poseNumbers_.push_back(reading.pose);
+    std::sort(poseNumbers_.begin(), poseNumbers_.end());
+    poseNumbers_.erase(std::unique(poseNumbers_.begin(), poseNumbers_.end()), poseNumbers_.end());
+
+    const auto index = skin.indexById();
+    for (const GravityReading& reading : readings) {
+        const auto found = index.find(reading.module);
+        if (found == index.end())
+            continue;
+        const auto pose = std::lower_bound(poseNumbers_.begin(), poseNumbers_.end(), reading.pose);
+        entries_[found->second].push_back(
+            {static_cast<std::size_t>(pose - poseNumbers_.begin()), reading.acceleration, reading.sigma});
+    }
+    for (auto& list : entries_)
+        std::sort(list.begin(), list.end(), [](const Entry& x, const Entry& y) { return x.pose < y.pose; });
+}
+
+tl::expected<RelativeRotation, CalibrationError> GravityTable::relativeRotation(
+    std::size_t a, std::size_t b, const RelativeRotationOptions& options) const {
+    std::vector<Vector3d> g_a;
+    std::vector<Vector3d> g_b;
+    auto i = entries_[a].begin();
+    auto k = entries_[b].begin();
+    while (i != entries_[a].end() && k != entries_[b].end()) {
+        if (i->pose < k->pose) {
+            ++i;
+        } else if (k->pose < i->pose) {
+            ++k;
+        } else {
+            g_a.push_back((i++)->acceleration);
+            g_b.push_back((k++)->acceleration);
+        }
+    }
+    return estimateRelativeRotation(g_a, g_b, options);
+}
+
+}  // namespace skincal

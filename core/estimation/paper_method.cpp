@@ -1,0 +1,122 @@
+#include "core/estimation/paper_method.h"
+
+#include <algorithm>
+
+#include "core/estimation/body_assembly.h"
+#include "core/estimation/patch_sightings.h"
+
+namespace skincal {
+namespace {
+
+struct PosedPatch {
+    std::size_t view = 0;
+    std::size_t patch = 0;
+    PatchPose pose;
+};
+
+/// eq. 15 and 16, until a whole round attaches nothing.
+void chainViews(const std::vector<PosedPatch>& posed, std::size_t views, BodyEstimate& estimate) {
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t v = 0; v < views; ++v) {
+            const PosedPatch* known = nullptr;
+            bool any = false;
+            for (const PosedPatch& p : posed) {
+                any = any || p.view == v;
+                if (p.view == v && estimate.T_r_o[p.patch] &&
+                    (known == nullptr || p.pose.inlierCount() > known->pose.inlierCount()))
+                    known = &p;
+            }
+            const bool nothingYet =
+                std::none_of(estimate.T_r_v.begin(), estimate.T_r_v.end(), [](const auto& T) { return T.has_value(); });
+            if (!estimate.T_r_v[v]) {
+                if (known != nullptr)
+                    estimate.T_r_v[v] = *estimate.T_r_o[known->patch] * known->pose.T_v_o.inverse();
+                else if (nothingYet && any)
+                    estimate.T_r_v[v] = Isometry3d::Identity();
+                else
+                    continue;
+                changed = true;
+            }
+            for (const PosedPatch& p : posed) {
+                if (p.view == v && !estimate.T_r_o[p.patch]) {
+                    estimate.T_r_o[p.patch] = *estimate.T_r_v[v] * p.pose.T_v_o;
+                    changed = true;
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+tl::expected<BodyModel, CalibrationError> calibratePaper(const Measurements& measurements,
+                                                         const PaperMethodOptions& options, const RunContext& context) {
+    const Skin& skin = measurements.skin;
+    const GravityTable gravity(skin, measurements.gravity);
+    const SkinLayout layout = layOutSkin(measurements, gravity, options.layout);
+
+    BodyEstimate estimate;
+    estimate.method = "paper";
+    for (const Patch& patch : layout.patches)
+        estimate.shapes.push_back(chainPatchShape(skin, layout, gravity, patch, options.rotation));
+
+    AdjustmentInput input;
+    input.skin = &skin;
+    input.camera = &measurements.camera;
+    input.gravity = &gravity;
+    input.pixels = flattenDetections(measurements);
+    input.gravityGroup = layout.patchOf;
+    estimate.rejected.assign(input.pixels.size(), false);
+    estimate.rejectedReason.resize(input.pixels.size());
+    estimate.patchViews.resize(layout.patches.size());
+
+    std::vector<PosedPatch> posed;
+    std::vector<std::size_t> mostLeds(layout.patches.size(), 0);
+    const auto sightings = collectSightings(skin, layout, estimate.shapes, input.pixels);
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+        const PatchSighting& sighting = sightings[i];
+        if (context.isCancelled())
+            return tl::unexpected(CalibrationError{ErrorCode::Cancelled, {}});
+        context.report("patch poses", static_cast<double>(i) / static_cast<double>(sightings.size()));
+        mostLeds[sighting.patch] = std::max(mostLeds[sighting.patch], sighting.leds.size());
+        const auto pose = estimatePatchPosePaper(sighting.leds, measurements.camera, options.pose);
+        for (std::size_t k = 0; k < sighting.observations.size(); ++k) {
+            if (!pose || !pose->inliers[k]) {
+                estimate.rejected[sighting.observations[k]] = true;
+                estimate.rejectedReason[sighting.observations[k]] =
+                    pose ? "outlier of the patch's pose"
+                         : "no pose of its patch in this view: " + pose.error().message();
+            }
+        }
+        if (pose) {
+            posed.push_back({sighting.view, sighting.patch, *pose});
+            estimate.patchViews[sighting.patch].push_back(sighting.view);
+        }
+    }
+
+    estimate.T_r_o.resize(layout.patches.size());
+    estimate.T_r_v.resize(measurements.views.size());
+    chainViews(posed, measurements.views.size(), estimate);
+
+    estimate.T_r_u.resize(skin.modules.size());
+    estimate.patchStatus.resize(layout.patches.size());
+    for (std::size_t k = 0; k < layout.patches.size(); ++k) {
+        const Patch& patch = layout.patches[k];
+        if (!estimate.T_r_o[k]) {
+            estimate.patchStatus[k] = "not seen with a placed patch";
+            estimate.missing.push_back(notSeenWithPlaced(skin, patch, mostLeds[k], options.pose.minInliers));
+            continue;
+        }
+        estimate.patchStatus[k] = "placed";
+        for (std::size_t i = 0; i < patch.modules.size(); ++i) {
+            if (estimate.shapes[k].T_o_u[i])
+                estimate.T_r_u[patch.modules[i]] = *estimate.T_r_o[k] * *estimate.shapes[k].T_o_u[i];
+        }
+    }
+    for (const auto& T : estimate.T_r_v)
+        estimate.viewStatus.emplace_back(T ? "placed" : "shows no placed patch well enough");
+    return assembleBody(measurements, gravity, layout, input, estimate);
+}
+
+}  // namespace skincal

@@ -1,0 +1,47 @@
+#include "core/estimation/view_alternatives.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skincal {
+namespace {
+
+/// Costs nearer than this (in log likelihood) leave the choice open.
+constexpr double kDecisive = 3.0;
+
+}  // namespace
+
+tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& input, BodyState start,
+                                                         const std::vector<ViewAlternative>& alternatives,
+                                                         const AdjustmentOptions& options, const RunContext& context) {
+    SettledViews settled{std::move(start), 0};
+    const auto& modules = settled.state.T_r_u;
+    const auto first = std::find_if(modules.begin(), modules.end(), [](const auto& T) { return T.has_value(); });
+    if (first == modules.end())
+        return settled;
+    const auto fixedModule = static_cast<std::size_t>(first - modules.begin());
+    const auto adjusted = [&](const BodyState& state) {
+        return adjustBody(input, state, std::nullopt, fixedModule, options, context);
+    };
+    auto best = adjusted(settled.state);
+    if (!best && best.error().code == ErrorCode::Cancelled)
+        return tl::unexpected(best.error());
+    for (const ViewAlternative& alternative : alternatives) {
+        BodyState other = settled.state;
+        other.T_r_v[alternative.view] = alternative.T_r_v;
+        auto result = adjusted(other);
+        if (!result && result.error().code == ErrorCode::Cancelled)
+            return tl::unexpected(result.error());
+        if (!result)
+            continue;
+        if (best && std::abs(result->summary.finalCost - best->summary.finalCost) < kDecisive)
+            ++settled.undecided;
+        if (!best || result->summary.finalCost < best->summary.finalCost) {
+            settled.state = std::move(other);
+            best = std::move(result);
+        }
+    }
+    return settled;
+}
+
+}  // namespace skincal

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "core/estimation/body_adjustment.h"
+
+namespace skincal {
+
+/// Another place where a view could stand, in the body frame of the state that it belongs to.
+struct ViewAlternative {
+    std::size_t view = 0;
+    Isometry3d T_r_v = Isometry3d::Identity();
+};
+
+struct SettledViews {
+    BodyState state;
+    std::size_t undecided = 0;  ///< views whose alternative costs nearly as little
+};
+
+/// Settles by cost what no other evidence could: tries each alternative in turn, adjusts, and keeps the one that the
+/// measurements like better. With the shape free to follow, the wrong pose of a flat patch explains its pixels worse.
+/// Fails with Cancelled.
+[[nodiscard]] tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& input, BodyState start,
+                                                                       const std::vector<ViewAlternative>& alternatives,
+                                                                       const AdjustmentOptions& options = {},
+                                                                       const RunContext& context = {});
+
+}  // namespace skincal

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "core/formats/file_error.h"
+
+namespace skincal {
+
+/// The whole file; refused above `maxBytes`.
+[[nodiscard]] tl::expected<std::string, FileError> readFile(const std::filesystem::path& file, std::size_t maxBytes);
+
+/// Writes beside the target, flushes to the disk and renames: a reader sees the old file or the new one, whole.
+[[nodiscard]] tl::expected<void, FileError> writeFileAtomically(const std::filesystem::path& file,
+                                                                std::string_view bytes);
+
+/// Lower-case hexadecimal SHA-256.
+[[nodiscard]] std::string sha256(std::string_view bytes);
+
+/// A path from inside a recording, made absolute. Refuses what is absolute, empty, or leads out of the directory, be
+/// it by ".." or through a symbolic link.
+[[nodiscard]] tl::expected<std::filesystem::path, std::string> resolveInside(const std::filesystem::path& directory,
+                                                                             const std::string& relative);
+
+}  // namespace skincal

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "core/formats/file_error.h"
+#include "core/skin/skin.h"
+#include "core/vision/camera_model.h"
+#include "core/vision/detection.h"
+#include "core/vision/frame.h"
+
+namespace skincal {
+
+struct RecordedView {
+    std::string name;
+    std::vector<FrameInfo> frames;  ///< win over detections where there are any
+    std::vector<LedDetection> detections;
+};
+
+/// What the operator accepted or rejected.
+struct Decision {
+    std::string view;
+    ModuleId module;
+    std::string verdict;  ///< "accepted" or "rejected"
+    std::string reason;
+};
+
+/// A *.skinrec directory: everything that was measured, nothing that was computed.
+struct Recording {
+    Skin skin;
+    std::vector<GravityReading> gravity;
+    CameraModel camera;
+    std::vector<RecordedView> views;
+    std::vector<Decision> decisions;
+};
+
+/// Reads and checks a recording without loading its pictures (frame files must exist). Every defect that
+/// recording.md lists gives one error that names the file, the place and what was expected.
+[[nodiscard]] tl::expected<Recording, FileError> readRecording(const std::filesystem::path& directory);
+
+/// Writes recording.json, gravity.csv and (where a view has any) detections.csv. Pictures are written by
+/// writeFrame. Refuses a directory that already holds a recording unless `overwrite`.
+[[nodiscard]] tl::expected<void, FileError> writeRecording(const Recording& recording,
+                                                           const std::filesystem::path& directory,
+                                                           bool overwrite = false);
+
+/// Loads one frame, PNG or JPEG only, after checking from its header that it has the camera's size.
+[[nodiscard]] tl::expected<cv::Mat, FileError> loadFrame(const std::filesystem::path& directory, const FrameInfo& frame,
+                                                         const CameraModel& camera);
+
+/// Writes an 8-bit picture as PNG, making its folder.
+[[nodiscard]] tl::expected<void, FileError> writeFrame(const std::filesystem::path& directory, const std::string& file,
+                                                       const cv::Mat& picture);
+
+/// SHA-256 of recording.json, of the gravity and detections files that it names and of each frame, by path in the
+/// recording.
+[[nodiscard]] tl::expected<std::map<std::string, std::string>, FileError> digestRecording(
+    const std::filesystem::path& directory, const Recording& recording);
+
+}  // namespace skincal

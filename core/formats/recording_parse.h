@@ -1,0 +1,48 @@
+#pragma once
+
+/// The reader of a recording taken apart, for tests and fuzzing: text in, values out, no file system.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "core/formats/recording.h"
+
+namespace skincal {
+
+/// Above these a recording is refused: no skin is that large, a damaged file easily is.
+inline constexpr std::size_t kMaxModules = 1'000'000;
+inline constexpr std::size_t kMaxLinks = 4'000'000;
+inline constexpr std::size_t kMaxTemplates = 1'000;
+inline constexpr std::size_t kMaxPorts = 64;
+inline constexpr std::size_t kMaxViews = 100'000;
+inline constexpr std::size_t kMaxFramesPerView = 1'000'000;
+inline constexpr long kMaxImageSide = 16'384;
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 30U;
+inline constexpr std::size_t kMaxCsvBytes = std::size_t{4} << 30U;
+inline constexpr std::size_t kMaxImageBytes = std::size_t{256} << 20U;
+
+/// Standard deviations outside of these are refused, m/s^2 and px alike.
+inline constexpr double kMinSigma = 1e-6;
+inline constexpr double kMaxSigma = 1e6;
+
+struct ParsedRecording {
+    Recording recording;  ///< without gravity and detections
+    std::optional<std::string> gravityFile;
+    std::optional<std::string> detectionsFile;
+};
+
+[[nodiscard]] tl::expected<ParsedRecording, FileError> parseRecordingJson(std::string_view text,
+                                                                          const std::filesystem::path& file);
+
+/// Fills recording.gravity.
+[[nodiscard]] tl::expected<void, FileError> parseGravityCsv(std::string_view text, const std::filesystem::path& file,
+                                                            Recording& recording);
+
+/// Fills the views' detections.
+[[nodiscard]] tl::expected<void, FileError> parseDetectionsCsv(std::string_view text, const std::filesystem::path& file,
+                                                               Recording& recording);
+
+}  // namespace skincal

@@ -1,0 +1,120 @@
+#include "core/formats/template_json.h"
+
+#include <fmt/format.h>
+
+#include "core/formats/recording_parse.h"
+
+namespace skincal {
+namespace {
+
+/// No board is larger than this, m; a file in millimetres is found out by it.
+constexpr double kMaxModuleSize = 1.0;
+
+Vector3d readPosition(const JsonCursor& cursor) {
+    const Vector3d p = cursor.vector3();
+    if (p.cwiseAbs().maxCoeff() > kMaxModuleSize)
+        cursor.fail(fmt::format("expected a position within {} m of the module's origin (metres, not millimetres)",
+                                kMaxModuleSize));
+    return p;
+}
+
+nlohmann::ordered_json toJson(const Vector3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+}  // namespace
+
+ModuleTemplate readTemplate(const JsonCursor& cursor) {
+    ModuleTemplate type;
+    type.name = cursor.at("name").text();
+    if (type.name.empty())
+        cursor.at("name").fail("expected a name, found an empty string");
+    const auto outline = cursor.at("outline").array(10'000);
+    if (outline.size() < 3)
+        cursor.at("outline").fail(fmt::format("expected at least 3 points, found {}", outline.size()));
+    for (const JsonCursor& point : outline) {
+        const Vector2d p = point.vector2();
+        if (p.cwiseAbs().maxCoeff() > kMaxModuleSize)
+            point.fail(fmt::format("expected a point within {} m of the module's origin", kMaxModuleSize));
+        type.outline.push_back(p);
+    }
+    type.led = readPosition(cursor.at("led"));
+    for (const JsonCursor& port : cursor.at("ports").array(kMaxPorts))
+        type.ports.push_back(readPosition(port));
+    if (cursor.holds("accelerometer"))
+        type.accelerometer = readPosition(cursor.at("accelerometer"));
+    if (cursor.holds("sensors")) {
+        for (const JsonCursor& sensor : cursor.at("sensors").array(10'000))
+            type.sensors.push_back({sensor.at("kind").text(), readPosition(sensor.at("position"))});
+    }
+    return type;
+}
+
+nlohmann::ordered_json templateToJson(const ModuleTemplate& type) {
+    nlohmann::ordered_json json;
+    json["name"] = type.name;
+    json["outline"] = nlohmann::ordered_json::array();
+    for (const Vector2d& p : type.outline)
+        json["outline"].push_back({p.x(), p.y()});
+    json["led"] = toJson(type.led);
+    json["ports"] = nlohmann::ordered_json::array();
+    for (const Vector3d& port : type.ports)
+        json["ports"].push_back(toJson(port));
+    if (type.accelerometer)
+        json["accelerometer"] = toJson(*type.accelerometer);
+    if (!type.sensors.empty()) {
+        json["sensors"] = nlohmann::ordered_json::array();
+        for (const SensorSite& sensor : type.sensors) {
+            nlohmann::ordered_json entry;
+            entry["kind"] = sensor.kind;
+            entry["position"] = toJson(sensor.position);
+            json["sensors"].push_back(std::move(entry));
+        }
+    }
+    return json;
+}
+
+CameraModel readCamera(const JsonCursor& cursor) {
+    CameraModel camera;
+    const std::string model = cursor.at("model").text();
+    if (model != "pinhole")
+        cursor.at("model").fail(fmt::format("expected \"pinhole\", found \"{}\"", model));
+    camera.width = static_cast<int>(cursor.at("width").integer(1, kMaxImageSide));
+    camera.height = static_cast<int>(cursor.at("height").integer(1, kMaxImageSide));
+    camera.fx = cursor.at("fx").number(1, 1e6);
+    camera.fy = cursor.at("fy").number(1, 1e6);
+    camera.cx = cursor.at("cx").number(-1e5, 1e5);
+    camera.cy = cursor.at("cy").number(-1e5, 1e5);
+    const JsonCursor nameCursor = cursor.at("distortion_model");
+    const auto distortion = distortionModelFromName(nameCursor.text());
+    if (!distortion)
+        nameCursor.fail(fmt::format("expected \"plumb_bob\", \"rational_polynomial\" or \"equidistant\", found \"{}\"",
+                                    nameCursor.text()));
+    camera.distortionModel = *distortion;
+    const std::size_t needed = coefficientCount(*distortion);
+    for (const JsonCursor& coefficient : cursor.at("distortion").array(64))
+        camera.distortion.push_back(coefficient.number(-1e4, 1e4));
+    if (camera.distortion.size() != needed)
+        cursor.at("distortion")
+            .fail(fmt::format("expected {} coefficients of {}, found {}", needed, name(*distortion),
+                              camera.distortion.size()));
+    return camera;
+}
+
+nlohmann::ordered_json cameraToJson(const CameraModel& camera) {
+    nlohmann::ordered_json json;
+    json["model"] = "pinhole";
+    json["width"] = camera.width;
+    json["height"] = camera.height;
+    json["fx"] = camera.fx;
+    json["fy"] = camera.fy;
+    json["cx"] = camera.cx;
+    json["cy"] = camera.cy;
+    json["distortion_model"] = std::string(name(camera.distortionModel));
+    json["distortion"] = camera.distortion;
+    if (camera.distortion.empty())
+        json["distortion"] = std::vector<double>(coefficientCount(camera.distortionModel), 0.0);
+    return json;
+}
+
+}  // namespace skincal

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/formats/json_cursor.h"
+#include "core/skin/module_template.h"
+#include "core/vision/camera_model.h"
+
+namespace skincal {
+
+/// A module template as recording.md and body-model.md write it. Reading throws FileErrorException.
+[[nodiscard]] ModuleTemplate readTemplate(const JsonCursor& cursor);
+[[nodiscard]] nlohmann::ordered_json templateToJson(const ModuleTemplate& type);
+
+[[nodiscard]] CameraModel readCamera(const JsonCursor& cursor);
+[[nodiscard]] nlohmann::ordered_json cameraToJson(const CameraModel& camera);
+
+}  // namespace skincal

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace skincal {
+
+/// What can go wrong in the field. Broken contracts throw std::logic_error instead.
+enum class ErrorCode {
+    TooFewPoses,       ///< fewer gravity poses than the estimate needs
+    ParallelGravity,   ///< the poses differ only by a turn about gravity
+    TooFewPoints,      ///< fewer LEDs than a pose needs
+    DegeneratePoints,  ///< points on a line, or all at one place
+    NoConsensus,       ///< no pose explains enough of the points
+    SizeMismatch,      ///< paired inputs of different length
+    NotFinite,         ///< NaN or infinity among the measurements
+    NotConverged,      ///< the solver stopped before it was done
+    InvalidOptions,    ///< an option outside its range
+    Cancelled,         ///< the caller asked to stop
+    NothingPlaced,     ///< no module could be given a pose in the body
+    NoDisplay,         ///< nothing to draw with
+};
+
+[[nodiscard]] std::string_view name(ErrorCode code);
+
+/// A code and the numbers that belong to it ("needed" 6, "found" 4). The user interface makes the sentence.
+struct CalibrationError {
+    ErrorCode code{};
+    std::map<std::string, double> numbers{};
+
+    /// Plain English for logs and the command line, e.g. "too few points (found 4, needed 6)".
+    [[nodiscard]] std::string message() const;
+};
+
+}  // namespace skincal

@@ -1,0 +1,212 @@
+#include "core/simulation/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/geometry/random.h"
+
+namespace skincal {
+namespace {
+
+constexpr std::size_t kNoiseTable = std::size_t{1} << 16U;
+constexpr double kReferenceDistance = 0.6;  // m, at which RenderOptions::ledPeak holds
+
+/// Clouds and boxes: gradients and edges as a lab has them.
+cv::Mat paintBackground(const World& world, std::size_t view) {
+    const CameraModel& camera = world.scenario.camera;
+    const RenderOptions& options = world.scenario.pictures;
+    Random random(world.seed + 7919 * view, "background");
+    cv::Mat coarse(9, 16, CV_32F);
+    for (int y = 0; y < coarse.rows; ++y) {
+        for (int x = 0; x < coarse.cols; ++x)
+            coarse.at<float>(y, x) = static_cast<float>(options.background + 0.4 * options.texture * random.normal());
+    }
+    cv::Mat picture;
+    cv::resize(coarse, picture, cv::Size(camera.width, camera.height), 0, 0, cv::INTER_CUBIC);
+    for (int box = 0; box < 25; ++box) {
+        const cv::Rect area(static_cast<int>(random.uniform(-0.1, 0.95) * camera.width),
+                            static_cast<int>(random.uniform(-0.1, 0.95) * camera.height),
+                            static_cast<int>(random.uniform(0.02, 0.2) * camera.width),
+                            static_cast<int>(random.uniform(0.02, 0.25) * camera.height));
+        const double level = options.background + options.texture * random.uniform(-1, 1);
+        cv::rectangle(picture, area, cv::Scalar(level), cv::FILLED);
+    }
+    cv::GaussianBlur(picture, picture, cv::Size(0, 0), options.blur_px);
+    return cv::max(picture, 3.0);
+}
+
+double flickerAt(std::size_t frame) {
+    // A lamp at 100 Hz seen at 30 frames per second: beats at 10 Hz.
+    return std::sin(2 * 180 * kDegree * 100.0 * static_cast<double>(frame) / 30.0 + 0.7);
+}
+
+}  // namespace
+
+double ledLobe(double angle, double fullAngle) {
+    const double c = std::cos(angle);
+    if (c <= 0)
+        return 0;
+    return std::pow(c, std::log(0.5) / std::log(std::cos(0.5 * fullAngle)));
+}
+
+FrameRenderer::FrameRenderer(const World& world, std::size_t view, std::size_t frames)
+    : world_(world),
+      view_(view),
+      frames_(frames),
+      background_(paintBackground(world, view)),
+      noise_(kNoiseTable),
+      index_(world.skin.indexById()) {
+    Random random(world.seed, "noise table");
+    for (float& n : noise_)
+        n = static_cast<float>(random.normal());
+    spots_ = spotsAt(world.T_r_v[view]);
+    if (world.scenario.disturbances.bump_px > 0) {
+        const double angle = world.scenario.disturbances.bump_px / world.scenario.camera.fx;
+        Isometry3d T = world.T_r_v[view];
+        T.linear() = T.linear() * so3Exp(angle * Vector3d(0.6, -0.8, 0.1));
+        bumpedSpots_ = spotsAt(T);
+    }
+    const Eigen::Vector4d hidden = occluderOf(world, view);
+    if (hidden[2] > 0)
+        cv::rectangle(background_,
+                      cv::Rect(static_cast<int>(hidden[0]), static_cast<int>(hidden[1]), static_cast<int>(hidden[2]),
+                               static_cast<int>(hidden[3])),
+                      cv::Scalar(180), cv::FILLED);
+}
+
+std::vector<FrameRenderer::Spot> FrameRenderer::spotsAt(const Isometry3d& T_r_v) const {
+    const RenderOptions& options = world_.scenario.pictures;
+    std::vector<Spot> spots(world_.T_r_u.size());
+    // Light fades towards the side but does not end at an angle, as a rule of visibility does.
+    Visibility any;
+    any.maxAngle = 85 * kDegree;
+    any.margin_px = -20;
+    for (std::size_t u = 0; u < spots.size(); ++u) {
+        if (!visiblePixel(world_, view_, u, any))
+            continue;
+        const Vector3d led_r = world_.T_r_u[u] * world_.skin.templateOf(u).led;
+        const auto pixel = world_.scenario.camera.project(T_r_v.inverse() * led_r);
+        const Vector3d ray = T_r_v.translation() - led_r;
+        if (!pixel)
+            continue;
+        const double angle = std::acos(std::clamp(world_.T_r_u[u].linear().col(2).dot(ray.normalized()), -1.0, 1.0));
+        spots[u] = {*pixel,
+                    options.ledPeak * ledLobe(angle, options.lobe) * std::pow(kReferenceDistance / ray.norm(), 2)};
+    }
+    return spots;
+}
+
+bool FrameRenderer::bumped(std::size_t frame) const {
+    return !bumpedSpots_.empty() && view_ % 2 == 1 && 2 * frame >= frames_;
+}
+
+void FrameRenderer::drawSpot(cv::Mat& light, const Spot& spot) const {
+    const RenderOptions& options = world_.scenario.pictures;
+    constexpr double kHaloWidth = 2.5;
+    const int radius = static_cast<int>(std::ceil(3.5 * kHaloWidth * options.blur_px));
+    const int cx = static_cast<int>(std::lround(spot.pixel.x()));
+    const int cy = static_cast<int>(std::lround(spot.pixel.y()));
+    for (const auto& [width, peak] :
+         {std::pair(options.blur_px, spot.peak), std::pair(kHaloWidth * options.blur_px, options.halo * spot.peak)}) {
+        // A pixel collects light over its area: differences of the error function, exact at any sub-pixel place.
+        const double s = 1 / (std::sqrt(2.0) * width);
+        const double norm = 2 * 180 * kDegree * width * width * peak / 4;
+        std::vector<double> along(static_cast<std::size_t>(2 * radius + 1));
+        for (int dx = -radius; dx <= radius; ++dx) {
+            const double x = cx + dx - spot.pixel.x();
+            along[static_cast<std::size_t>(dx + radius)] = std::erf((x + 0.5) * s) - std::erf((x - 0.5) * s);
+        }
+        for (int dy = -radius; dy <= radius; ++dy) {
+            const int y = cy + dy;
+            if (y < 0 || y >= light.rows)
+                continue;
+            const double v = y - spot.pixel.y();
+            const double across = norm * (std::erf((v + 0.5) * s) - std::erf((v - 0.5) * s));
+            auto* row = light.ptr<float>(y);
+            for (int dx = std::max(-radius, -cx); dx <= std::min(radius, light.cols - 1 - cx); ++dx)
+                row[cx + dx] += static_cast<float>(across * along[static_cast<std::size_t>(dx + radius)]);
+        }
+    }
+}
+
+void FrameRenderer::disturb(cv::Mat& light, std::size_t frame) const {
+    const DisturbanceOptions& options = world_.scenario.disturbances;
+    if (options.flicker > 0) {
+        // Most of it where the lamp shines, some of it everywhere.
+        const double swing = options.flicker * flickerAt(frame);
+        light += cv::Scalar(0.3 * swing);
+        light(cv::Rect(0, 0, light.cols / 2, light.rows / 2)) += cv::Scalar(0.7 * swing);
+    }
+    if (options.person) {
+        const double way = static_cast<double>(frame) / static_cast<double>(std::max<std::size_t>(1, frames_ - 1));
+        const cv::Point middle(static_cast<int>((1.2 * way - 0.1) * light.cols), static_cast<int>(0.62 * light.rows));
+        cv::ellipse(light, middle, cv::Size(light.cols / 22, light.rows / 3), 0, 0, 360, cv::Scalar(115), cv::FILLED);
+        cv::circle(light, middle - cv::Point(0, light.rows * 2 / 5), light.rows / 12, cv::Scalar(150), cv::FILLED);
+    }
+}
+
+cv::Mat FrameRenderer::expose(const cv::Mat& light, std::uint64_t noiseSeed) const {
+    const RenderOptions& options = world_.scenario.pictures;
+    // Standard deviation by grey level: read and shot noise together.
+    std::array<float, 257> sigma{};
+    for (std::size_t level = 0; level < sigma.size(); ++level)
+        sigma.at(level) = static_cast<float>(
+            std::sqrt(options.readNoise * options.readNoise + options.shotNoise * static_cast<double>(level)));
+    Random random(noiseSeed);
+    cv::Mat picture(light.size(), CV_8UC1);
+    const auto columns = static_cast<std::size_t>(light.cols);
+    for (int y = 0; y < light.rows; ++y) {
+        // Each row reads the table from a place of its own: cheap, and nothing repeats that anyone would look for.
+        const float* noise = noise_.data() + random.index(kNoiseTable - columns);
+        const auto* in = light.ptr<float>(y);
+        auto* out = picture.ptr<unsigned char>(y);
+        for (std::size_t x = 0; x < columns; ++x) {
+            const float level = std::min(255.0F, std::max(0.0F, in[x]));
+            const float value = in[x] + sigma[static_cast<std::size_t>(level)] * noise[x] + 0.5F;
+            out[x] = static_cast<unsigned char>(std::min(255.0F, std::max(0.0F, value)));
+        }
+    }
+    return picture;
+}
+
+cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t frame, bool colour) const {
+    colour = colour || std::any_of(lit.begin(), lit.end(), [](const LitModule& l) { return l.colour.has_value(); });
+    const std::vector<Spot>& spots = bumped(frame) ? bumpedSpots_ : spots_;
+    const double mirror = world_.scenario.disturbances.reflection;
+    const std::uint64_t frameSeed = (world_.seed * 1000003 + view_) * 1000003 + frame;
+    std::vector<cv::Mat> channels;
+    for (int channel = 0; channel < (colour ? 3 : 1); ++channel) {
+        cv::Mat light = background_.clone();
+        disturb(light, frame);
+        for (const LitModule& l : lit) {
+            const auto found = index_.find(l.module);
+            if (found == index_.end() || spots[found->second].peak <= 0)
+                continue;
+            Spot spot = spots[found->second];
+            if (l.colour) {
+                // BGR; a coloured LED leaks a little into the other channels of the sensor.
+                const int on = l.colour->at(static_cast<std::size_t>(2 - channel));
+                spot.peak *= on != 0 ? 1.0 : 0.08;
+            }
+            drawSpot(light, spot);
+            if (mirror > 0) {
+                // A mirror below the body.
+                Spot image = spot;
+                image.pixel.y() = 1.55 * world_.scenario.camera.height - image.pixel.y();
+                image.peak *= mirror;
+                if (world_.scenario.camera.contains(image.pixel))
+                    drawSpot(light, image);
+            }
+        }
+        channels.push_back(expose(light, frameSeed * 3 + static_cast<std::uint64_t>(channel)));
+    }
+    if (!colour)
+        return channels.front();
+    cv::Mat picture;
+    cv::merge(channels, picture);
+    return picture;
+}
+
+}  // namespace skincal

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry/se3.h"
+#include "core/skin/module_template.h"
+#include "core/vision/camera_model.h"
+
+namespace skincal {
+
+enum class SurfaceKind {
+    Plane,     ///< z = 0
+    Cylinder,  ///< axis y, the layout's x runs round it
+    FreeForm,  ///< a smooth random relief
+    Sole,      ///< a shoe's: bent up at toe and heel
+};
+
+/// Where one patch lies and what it is made of.
+struct PatchPlan {
+    SurfaceKind surface = SurfaceKind::Plane;
+    double radius = 0.05;                       ///< m, of a cylinder; scale of the relief of a free form
+    Isometry3d T_r_s = Isometry3d::Identity();  ///< surface frame in the body
+    Vector2d offset = Vector2d::Zero();         ///< of the patch's middle on the surface, m along it
+    std::size_t modules = 7;
+    std::size_t type = 0;     ///< index into Scenario::templates
+    double raggedness = 0.3;  ///< 0 grows round patches, 1 sprawling ones
+    bool strip = false;       ///< one row of modules, port 0 to the port opposite
+    bool ring = false;        ///< a strip whose ends are linked
+};
+
+struct SensorOptions {
+    int poses = 12;
+    double bias = 0.3;           ///< m/s^2 per axis, standard deviation
+    double scale = 0.01;         ///< per axis, standard deviation about 1
+    double misalignment = 0;     ///< rad, of the chip on its board
+    double noise = 0.03;         ///< m/s^2 per axis and reading
+    bool parallelPoses = false;  ///< all poses differ by turns about gravity only: a degenerate set
+};
+
+struct PlayOptions {
+    double position = 0.3e-3;  ///< m per axis, standard deviation
+    double tilt = 0.01;        ///< rad per axis
+};
+
+enum class ScanKind {
+    Detections,  ///< no pictures: LED positions with noise
+    OneAtATime,  ///< each LED alone between backgrounds, as in the paper
+    Coded,       ///< every module blinks a word of its own
+    Coloured,    ///< up to seven LEDs at once, each in a native colour
+};
+
+struct ViewOptions {
+    int count = 8;
+    double distance = 0.8;           ///< m from the camera to the body
+    double tilt = 25 * kDegree;      ///< how far cameras are turned away at random
+    double maxAngle = 70 * kDegree;  ///< between an LED's axis and the ray to a camera that still finds it
+    double pixelNoise = 0.05;        ///< px per axis, for ScanKind::Detections
+    double outliers = 0;             ///< share of detections that are somewhere else
+    ScanKind scan = ScanKind::Detections;
+    int repeats = 1;  ///< foreground frames per module in one-at-a-time scans
+};
+
+struct RenderOptions {
+    double ledPeak = 450;         ///< grey levels of a frontal LED at 0.6 m
+    double lobe = 120 * kDegree;  ///< full angle at half intensity
+    double blur_px = 0.9;         ///< Gaussian sigma of the lens
+    double halo = 0.04;           ///< share of the peak that the wide halo has
+    double readNoise = 1.3;       ///< grey levels
+    double shotNoise = 0.02;      ///< variance per grey level
+    double background = 70;       ///< mean grey level
+    double texture = 45;          ///< contrast of the background
+};
+
+struct DisturbanceOptions {
+    double reflection = 0;  ///< share of an LED's light that a mirror beside the body returns
+    double flicker = 0;     ///< grey levels, lamp at twice the mains frequency
+    bool person = false;    ///< someone walks through the picture
+    bool occluder = false;  ///< something opaque hides part of the picture
+    double bump_px = 0;     ///< the camera is knocked half-way through each second view
+};
+
+/// Everything that a simulated world is made from, given a seed.
+struct Scenario {
+    std::string name;
+    std::string description;
+    std::vector<ModuleTemplate> templates{paperHexagon()};
+    std::vector<PatchPlan> patches;
+    bool cables = false;            ///< consecutive patches are wired to each other
+    std::vector<Vector3d> outward;  ///< where cameras stand, per patch; empty: along the patch's normal
+    SensorOptions sensors;
+    PlayOptions play;
+    ViewOptions views;
+    RenderOptions pictures;
+    DisturbanceOptions disturbances;
+    CameraModel camera;
+};
+
+/// A webcam at 1280x720 with a little distortion.
+[[nodiscard]] CameraModel simulatedWebcam();
+
+/// The worlds that come with the program.
+[[nodiscard]] const std::vector<Scenario>& builtInScenarios();
+[[nodiscard]] const Scenario* findScenario(std::string_view name);
+
+}  // namespace skincal

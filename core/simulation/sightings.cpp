@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/random.h"
+#include "core/simulation/world.h"
+
+namespace skincal {
+namespace {
+
+/// Least distance between the segment a-b and a tube's axis, with how far along the segment it is (0 to 1).
+bool crosses(const Tube& tube, const Vector3d& a, const Vector3d& b) {
+    const Vector3d d1 = b - a;
+    const Vector3d d2 = tube.to - tube.from;
+    const Vector3d r = a - tube.from;
+    const double aa = d1.squaredNorm();
+    const double ee = d2.squaredNorm();
+    const double f = d2.dot(r);
+    const double c = d1.dot(r);
+    const double bb = d1.dot(d2);
+    const double denominator = aa * ee - bb * bb;
+    double s = denominator > 1e-12 ? std::clamp((bb * f - c * ee) / denominator, 0.0, 1.0) : 0.0;
+    const double t = std::clamp((bb * s + f) / ee, 0.0, 1.0);
+    s = std::clamp((bb * t - c) / aa, 0.0, 1.0);
+    return (a + s * d1 - tube.from - t * d2).norm() < tube.radius;
+}
+
+}  // namespace
+
+Eigen::Vector4d occluderOf(const World& world, std::size_t view) {
+    if (!world.scenario.disturbances.occluder)
+        return Eigen::Vector4d::Zero();
+    // Round the place where some module's LED would be, so that it hides something.
+    Random random(world.seed + view, "occluder");
+    const std::size_t module = random.index(world.T_r_u.size());
+    const Vector3d led_v = world.T_r_v[view].inverse() * (world.T_r_u[module] * world.skin.templateOf(module).led);
+    const auto pixel = world.scenario.camera.project(led_v);
+    const Vector2d middle = pixel.value_or(Vector2d(world.scenario.camera.cx, world.scenario.camera.cy));
+    const double size = 0.075 * world.scenario.camera.fx / std::max(0.1, led_v.z());
+    return {middle.x() - 0.5 * size, middle.y() - 0.35 * size, size, 0.7 * size};
+}
+
+std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module,
+                                     const Visibility& visibility) {
+    const Isometry3d& T_r_u = world.T_r_u[module];
+    const Vector3d led_r = T_r_u * world.skin.templateOf(module).led;
+    const Vector3d camera_r = world.T_r_v[view].translation();
+    const Vector3d ray = (camera_r - led_r).normalized();
+    if (T_r_u.linear().col(2).dot(ray) < std::cos(visibility.maxAngle))
+        return std::nullopt;
+    const auto pixel = world.scenario.camera.project(world.T_r_v[view].inverse() * led_r);
+    const CameraModel& camera = world.scenario.camera;
+    if (!pixel || pixel->x() < visibility.margin_px || pixel->y() < visibility.margin_px ||
+        pixel->x() > camera.width - 1 - visibility.margin_px || pixel->y() > camera.height - 1 - visibility.margin_px)
+        return std::nullopt;
+    // A millimetre off the board, so that a tube does not hide the skin that lies on it.
+    const Vector3d start = led_r + 0.001 * T_r_u.linear().col(2);
+    for (const Tube& tube : world.tubes) {
+        if (crosses(tube, start, camera_r))
+            return std::nullopt;
+    }
+    const Eigen::Vector4d hidden = occluderOf(world, view);
+    if (hidden[2] > 0 && pixel->x() > hidden[0] && pixel->x() < hidden[0] + hidden[2] && pixel->y() > hidden[1] &&
+        pixel->y() < hidden[1] + hidden[3])
+        return std::nullopt;
+    return pixel;
+}
+
+std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module) {
+    Visibility visibility;
+    visibility.maxAngle = world.scenario.views.maxAngle;
+    return visiblePixel(world, view, module, visibility);
+}
+
+std::vector<ViewDetections> simulateDetections(const World& world) {
+    const ViewOptions& options = world.scenario.views;
+    Random random(world.seed, "detections");
+    std::vector<ViewDetections> views;
+    for (std::size_t v = 0; v < world.T_r_v.size(); ++v) {
+        ViewDetections view{viewName(v), {}, {}};
+        for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+            const auto pixel = visiblePixel(world, v, u);
+            if (!pixel)
+                continue;
+            Vector2d found = *pixel + options.pixelNoise * Vector2d(random.normal(), random.normal());
+            if (random.uniform() < options.outliers)
+                found = *pixel + Vector2d(random.uniform(-250, 250), random.uniform(-250, 250));
+            if (world.scenario.camera.contains(found))
+                view.found.push_back({world.skin.modules[u].id, found, std::max(1e-3, options.pixelNoise)});
+        }
+        views.push_back(std::move(view));
+    }
+    return views;
+}
+
+Truth truthOf(const World& world) {
+    Truth truth;
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
+        truth.modules.push_back({world.skin.modules[u].id, world.patchOf[u], world.T_r_u[u]});
+    for (std::size_t v = 0; v < world.T_r_v.size(); ++v) {
+        truth.views.push_back({viewName(v), world.T_r_v[v]});
+        for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+            if (const auto pixel = visiblePixel(world, v, u))
+                truth.pixels.push_back({viewName(v), world.skin.modules[u].id, *pixel});
+        }
+    }
+    return truth;
+}
+
+}  // namespace skincal

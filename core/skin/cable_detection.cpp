@@ -1,0 +1,155 @@
+#include "core/skin/cable_detection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace skincal {
+namespace {
+
+constexpr double kPi = 180 * kDegree;
+
+LinkVerdict cable(LinkReason reason, std::string explanation) {
+    return {LinkKind::Cable, reason, std::move(explanation), std::nullopt, std::nullopt};
+}
+
+/// What one link says for itself, leaving aside which others claim its ports.
+LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const std::optional<Matrix3d>& R_a_b,
+                       const std::optional<double>& separation, const CableOptions& options) {
+    if (link.a == link.b)
+        return cable(LinkReason::SelfLink, "both ends are at the same module");
+    if (link.has(LinkIssue::HostPort))
+        return cable(LinkReason::ComputerPort, "its port is the one that is wired to the computer");
+    LinkVerdict verdict;
+    if (R_a_b) {
+        const Matrix3d flat =
+            flatNeighbourRotation(skin.templateOf(link.a).ports[static_cast<std::size_t>(link.a_port)],
+                                  skin.templateOf(link.b).ports[static_cast<std::size_t>(link.b_port)]);
+        const BendAndTwist found = bendAndTwist(*R_a_b, flat);
+        verdict.bend = found.bend;
+        verdict.twist = found.twist;
+        if (found.bend > options.maxBend) {
+            verdict.kind = LinkKind::Cable;
+            verdict.reason = LinkReason::Bend;
+            verdict.explanation = fmt::format("the modules are folded by {:.0f}°, neighbours by {:.0f}° at most",
+                                              found.bend / kDegree, options.maxBend / kDegree);
+            return verdict;
+        }
+        if (found.twist > options.maxTwist) {
+            verdict.kind = LinkKind::Cable;
+            verdict.reason = LinkReason::Twist;
+            verdict.explanation =
+                fmt::format("the modules are turned by {:.0f}° in the plane of the skin, neighbours by {:.0f}° at most",
+                            found.twist / kDegree, options.maxTwist / kDegree);
+            return verdict;
+        }
+    }
+    if (separation && *separation > options.maxSeparation_pitches) {
+        verdict.kind = LinkKind::Cable;
+        verdict.reason = LinkReason::Separation;
+        verdict.explanation =
+            fmt::format("the LEDs are {:.1f} pitches apart in the pictures, neighbours {:.1f} at most", *separation,
+                        options.maxSeparation_pitches);
+        return verdict;
+    }
+    verdict.explanation = verdict.bend ? fmt::format("bend {:.1f}°, twist {:.1f}°: as neighbours have",
+                                                     *verdict.bend / kDegree, *verdict.twist / kDegree)
+                                       : "nothing speaks against it";
+    return verdict;
+}
+
+/// What to say of a link that lost one of its ports to another, or to nobody.
+enum class Contest { Won, LostToOperator, LostToRotation, Undecided };
+
+/// Of several links at one port at most one is real: the one that the operator named, else the only one whose rotation
+/// was measured and is one of neighbours. What nobody measured is not believed against another claim.
+void settleContradictions(const SkinGraph& graph, std::vector<LinkVerdict>& verdicts) {
+    const auto& links = graph.links();
+    std::map<std::pair<std::size_t, int>, std::vector<std::size_t>> claims;
+    for (std::size_t l = 0; l < verdicts.size(); ++l) {
+        // A link that the operator called a cable contests nothing any more: that word settles it.
+        if (!links[l].has(LinkIssue::Contradictory) || links[l].decided == LinkKind::Cable)
+            continue;
+        claims[{links[l].a, links[l].a_port}].push_back(l);
+        claims[{links[l].b, links[l].b_port}].push_back(l);
+    }
+    const auto named = [&](std::size_t l) {
+        return verdicts[l].kind == LinkKind::Adjacent && verdicts[l].reason == LinkReason::OperatorsWord;
+    };
+    const auto fits = [&](std::size_t l) { return verdicts[l].kind == LinkKind::Adjacent && verdicts[l].bend; };
+    std::vector<Contest> outcome(verdicts.size(), Contest::Won);
+    for (const auto& [port, claimants] : claims) {
+        if (claimants.size() < 2)
+            continue;
+        const bool operatorNamed = std::any_of(claimants.begin(), claimants.end(), named);
+        const bool oneFits = std::count_if(claimants.begin(), claimants.end(), fits) == 1;
+        for (const std::size_t l : claimants) {
+            if (named(l) || (!operatorNamed && oneFits && fits(l)))
+                continue;
+            outcome[l] = operatorNamed ? Contest::LostToOperator
+                         : oneFits     ? Contest::LostToRotation
+                                       : Contest::Undecided;
+        }
+    }
+    for (std::size_t l = 0; l < verdicts.size(); ++l) {
+        if (outcome[l] == Contest::Won || verdicts[l].kind == LinkKind::Cable)
+            continue;
+        verdicts[l].kind = LinkKind::Cable;
+        verdicts[l].reason = LinkReason::Contradictory;
+        verdicts[l].explanation =
+            outcome[l] == Contest::LostToOperator
+                ? "another link claims the same port, and the operator called that one a neighbour"
+            : outcome[l] == Contest::LostToRotation
+                ? "another link claims the same port, and its measured rotation fits neighbours"
+                : "several links claim the same port and nothing tells which of them is real: none is believed";
+    }
+}
+
+}  // namespace
+
+bool CableOptions::validate() const {
+    return maxBend > 0 && maxBend <= kPi && maxTwist > 0 && maxTwist <= kPi && maxSeparation_pitches > 1;
+}
+
+Matrix3d flatNeighbourRotation(const Vector3d& port_a, const Vector3d& port_b) {
+    const double azimuth = std::atan2(port_a.y(), port_a.x()) + kPi - std::atan2(port_b.y(), port_b.x());
+    return Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()).toRotationMatrix();
+}
+
+BendAndTwist bendAndTwist(const Matrix3d& R_a_b, const Matrix3d& flat) {
+    const Matrix3d D = R_a_b * flat.transpose();
+    BendAndTwist result;
+    result.bend = std::acos(std::clamp(D(2, 2), -1.0, 1.0));
+    // Swing-twist: the quaternion's part along z, with its scalar part, is the twist.
+    const Quaterniond q(D);
+    result.twist = 2 * std::atan2(std::abs(q.z()), std::abs(q.w()));
+    return result;
+}
+
+std::vector<LinkVerdict> detectCables(const Skin& skin, const SkinGraph& graph, const CableEvidence& evidence,
+                                      const CableOptions& options) {
+    const auto& links = graph.links();
+    if (!options.validate())
+        throw std::logic_error("CableOptions out of range");
+    if (evidence.R_a_b.size() != links.size() || evidence.separation_pitches.size() != links.size())
+        throw std::logic_error("detectCables: evidence and graph differ in size");
+    std::vector<LinkVerdict> verdicts;
+    verdicts.reserve(links.size());
+    for (std::size_t l = 0; l < links.size(); ++l) {
+        LinkVerdict verdict = judgeAlone(skin, links[l], evidence.R_a_b[l], evidence.separation_pitches[l], options);
+        // A module can't be its own neighbour, whatever anybody says.
+        if (links[l].decided && links[l].a != links[l].b) {
+            verdict.kind = *links[l].decided;
+            verdict.reason = LinkReason::OperatorsWord;
+            verdict.explanation = "the operator said so";
+        }
+        verdicts.push_back(std::move(verdict));
+    }
+    settleContradictions(graph, verdicts);
+    return verdicts;
+}
+
+}  // namespace skincal

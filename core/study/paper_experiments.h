@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/run_context.h"
+
+namespace skincal {
+
+/// The experiments of the paper's section III in simulated worlds with known truth: the paper's method and ours on the
+/// same data, next to what the paper printed and to the Cramer-Rao bound for the simulated noise.
+struct PaperStudyOptions {
+    int trials = 50;           ///< worlds per experiment, seeds 1, 2, …
+    double pixelNoise = 0.05;  ///< px per axis, the same for both methods
+
+    [[nodiscard]] bool validate() const { return trials > 0 && trials <= 100'000 && pixelNoise > 0; }
+};
+
+/// What one method reached over all trials.
+struct MethodOutcome {
+    int solved = 0;              ///< trials in which it gave a result
+    std::optional<double> mean;  ///< of the quantity
+    std::optional<double> rms;   ///< of its error
+};
+
+struct ExperimentRow {
+    std::string experiment;
+    std::string quantity;
+    std::string unit;
+    double truth = 0;               ///< value of the quantity
+    std::optional<double> printed;  ///< the paper's figure
+    MethodOutcome paper;
+    MethodOutcome ours;
+    std::optional<double> bound;  ///< Cramer-Rao bound of the error, rms over the trials
+};
+
+struct PaperStudy {
+    PaperStudyOptions options;
+    std::vector<ExperimentRow> rows;
+    bool cancelled = false;
+};
+
+[[nodiscard]] PaperStudy runPaperStudy(const PaperStudyOptions& options = {}, const RunContext& context = {});
+
+/// As a Markdown table.
+[[nodiscard]] std::string studyTable(const PaperStudy& study);
+
+}  // namespace skincal

@@ -1,0 +1,188 @@
+#include "core/study/study_world.h"
+
+#include <ceres/ceres.h>
+
+#include <cmath>
+
+#include "core/estimation/body_assembly.h"
+
+namespace skincal {
+namespace {
+
+AdjustmentInput inputOf(const World& world, const Measurements& measurements, const GravityTable& gravity) {
+    AdjustmentInput input;
+    input.skin = &measurements.skin;
+    input.camera = &measurements.camera;
+    input.gravity = &gravity;
+    input.pixels = flattenDetections(measurements);
+    input.gravityGroup.assign(measurements.skin.modules.size(), 0);
+    const auto index = world.skin.indexById();
+    for (std::size_t l = 0; l < world.skin.links.size(); ++l) {
+        if (world.isCable[l])
+            continue;
+        const Link& link = world.skin.links[l];
+        const std::size_t a = index.at(link.a);
+        const std::size_t b = index.at(link.b);
+        input.links.push_back({a, b, world.skin.templateOf(a).ports[static_cast<std::size_t>(link.a_port)],
+                               world.skin.templateOf(b).ports[static_cast<std::size_t>(link.b_port)]});
+    }
+    return input;
+}
+
+Isometry3d moved(const Isometry3d& T, Eigen::Index axis, double step) {
+    Vector6d d = Vector6d::Zero();
+    d[axis] = step;
+    return makeIsometry(so3Exp(d.head<3>()) * T.linear(), T.translation() + d.tail<3>());
+}
+
+/// Distance of a point from a cylinder: axis through a + u e1 + v e2 with direction n + p e1 + q e2.
+struct CylinderResidual {
+    Vector3d point, n, e1, e2;
+    template <class T>
+    bool operator()(const T* p, T* residual) const {
+        using Vector3 = Eigen::Matrix<T, 3, 1>;
+        const Vector3 direction = (n.cast<T>() + p[2] * e1.cast<T>() + p[3] * e2.cast<T>()).normalized();
+        const Vector3 base = p[0] * e1.cast<T>() + p[1] * e2.cast<T>();
+        const Vector3 d = point.cast<T>() - base;
+        residual[0] = (d - d.dot(direction) * direction).norm() - p[4];
+        return true;
+    }
+};
+
+}  // namespace
+
+World bareWorld(const std::vector<PatchPlan>& patches, std::uint64_t seed, double pixelNoise) {
+    Scenario scenario;
+    scenario.name = "study";
+    scenario.camera = simulatedWebcam();
+    scenario.patches = patches;
+    scenario.views.count = 0;
+    scenario.views.pixelNoise = pixelNoise;
+    return buildWorld(scenario, seed);
+}
+
+PatchPlan flatPatch(std::size_t modules) {
+    PatchPlan plan;
+    plan.modules = modules;
+    plan.raggedness = 0;
+    return plan;
+}
+
+PatchPlan bentPatch(std::size_t modules, double radius) {
+    PatchPlan plan = flatPatch(modules);
+    plan.surface = SurfaceKind::Cylinder;
+    plan.radius = radius;
+    return plan;
+}
+
+PatchPlan ringOfEight() {
+    PatchPlan plan = bentPatch(8, 0.5 * 27.785e-3 / std::tan(180 * kDegree / 8));
+    plan.strip = plan.ring = true;
+    return plan;
+}
+
+Isometry3d cameraBefore(const World& world, double distance, double tilt) {
+    // Facing: the camera looks against the patch's normal, its x along the patch's.
+    const Matrix3d R_v_o = Eigen::AngleAxisd(180 * kDegree + tilt, Vector3d::UnitX()).toRotationMatrix();
+    const Isometry3d T_v_o = makeIsometry(R_v_o, {0, 0, distance});
+    return world.T_r_u.front() * T_v_o.inverse();
+}
+
+Measurements measurementsOf(const World& world) {
+    return {world.skin, simulateGravity(world), world.scenario.camera, simulateDetections(world)};
+}
+
+std::optional<double> boundOf(const World& world, const Measurements& measurements, const PoseFunction& function) {
+    const GravityTable gravity(measurements.skin, measurements.gravity);
+    const AdjustmentInput input = inputOf(world, measurements, gravity);
+    BodyState truth;
+    truth.T_r_u.assign(world.T_r_u.begin(), world.T_r_u.end());
+    truth.T_r_v.assign(world.T_r_v.begin(), world.T_r_v.end());
+    truth.accelerometers.resize(world.T_r_u.size());
+    truth.up_r.emplace_back();
+    for (const Vector3d& g : world.gravity_r)
+        truth.up_r[0].emplace_back(g.normalized());
+
+    AdjustmentOptions options;
+    options.accelerometerSigma = world.scenario.sensors.noise;
+    options.biasSigma = world.scenario.sensors.bias;
+    options.scaleSigma = world.scenario.sensors.scale;
+    options.linkSigma = std::sqrt(2.0) * world.scenario.play.position;
+    options.pixelSigmaFloor_px = 1e-3;
+    // Views and modules in two goes: what a study asks for depends on either, not on both.
+    const bool views = !world.T_r_v.empty();
+    std::vector<std::size_t> which(views ? world.T_r_v.size() : world.T_r_u.size());
+    for (std::size_t i = 0; i < which.size(); ++i)
+        which[i] = i;
+    const std::vector<std::size_t> moving(which.begin() + (views ? 0 : 1), which.end());
+    const auto covariance = views ? viewPoseBound(input, truth, moving, std::nullopt, 0, options)
+                                  : modulePoseBound(input, truth, moving, std::nullopt, 0, options);
+    if (!covariance)
+        return std::nullopt;
+    Eigen::VectorXd gradient(covariance->rows());
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+        for (Eigen::Index axis = 0; axis < 6; ++axis) {
+            constexpr double kStep = 1e-6;
+            std::array<double, 2> value{};
+            for (const int sign : {0, 1}) {
+                auto T_r_v = world.T_r_v;
+                auto T_r_u = world.T_r_u;
+                Isometry3d& T = views ? T_r_v[moving[i]] : T_r_u[moving[i]];
+                T = moved(T, axis, sign == 0 ? -kStep : kStep);
+                value.at(static_cast<std::size_t>(sign)) = function(T_r_v, T_r_u);
+            }
+            gradient[static_cast<Eigen::Index>(6 * i) + axis] = (value[1] - value[0]) / (2 * kStep);
+        }
+    }
+    return std::sqrt(std::max(0.0, gradient.dot(*covariance * gradient)));
+}
+
+std::optional<BodyPoses> posesOf(const BodyModel& body, bool needViews) {
+    BodyPoses poses;
+    for (const BodyModule& module : body.modules) {
+        const auto& T = needViews ? module.T_body_module : module.T_patch_module;
+        if (!T)
+            return std::nullopt;
+        poses.T_r_u.push_back(*T);
+    }
+    for (const BodyView& view : body.views) {
+        if (!view.T_body_camera)
+            return std::nullopt;
+        poses.T_r_v.push_back(*view.T_body_camera);
+    }
+    return poses;
+}
+
+CylinderFit fitCylinder(const std::vector<Vector3d>& points, const Vector3d& axis, double radius) {
+    const Vector3d n = axis.normalized();
+    const Vector3d e1 = n.unitOrthogonal();
+    const Vector3d e2 = n.cross(e1);
+    Vector3d centre = Vector3d::Zero();
+    for (const Vector3d& p : points)
+        centre += p / static_cast<double>(points.size());
+    double best = 1e300;
+    CylinderFit fit;
+    // The points cover an arc: which side of them the axis is on is tried all round.
+    for (int side = 0; side < 8; ++side) {
+        const double angle = side * 45 * kDegree;
+        std::array<double, 5> p{radius * std::cos(angle), radius * std::sin(angle), 0, 0, radius};
+        ceres::Problem problem;
+        for (const Vector3d& point : points)
+            problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CylinderResidual, 1, 5>(
+                                         new CylinderResidual{point - centre, n, e1, e2}),
+                                     nullptr, p.data());
+        ceres::Solver::Options options;
+        options.linear_solver_type = ceres::DENSE_QR;
+        options.logging_type = ceres::SILENT;
+        options.function_tolerance = 1e-12;
+        ceres::Solver::Summary summary;
+        ceres::Solve(options, &problem, &summary);
+        if (summary.IsSolutionUsable() && summary.final_cost < best) {
+            best = summary.final_cost;
+            fit = {std::abs(p[4]), std::sqrt(2 * summary.final_cost / static_cast<double>(points.size()))};
+        }
+    }
+    return fit;
+}
+
+}  // namespace skincal

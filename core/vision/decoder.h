@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "core/geometry/run_context.h"
+#include "core/vision/detection.h"
+#include "core/vision/frame.h"
+#include "core/vision/frame_pass.h"
+#include "core/vision/spot_candidates.h"
+#include "core/vision/spot_fit.h"
+#include "core/vision/word_match.h"
+
+namespace skincal {
+
+struct DecoderOptions {
+    SpotCandidateOptions candidates{};
+    WordMatchOptions words{};
+    SpotFitOptions fit{};
+    int windowRadius = 5;          ///< half the side of the window around a spot
+    double maxShift_px = 2.5;      ///< how far the fitted centre may lie from the candidate
+    double maxStrayShare = 0.02;   ///< of a clipped spot's light that may follow another word
+    double sameSpot_px = 2;        ///< two finds of one module nearer than this are one
+    double reflectionRatio = 2.5;  ///< flux ratio from which the weaker of two spots is a reflection
+    int candidatesPerModule = 8;   ///< limits the candidates to this times the modules …
+    int extraCandidates = 500;     ///< … plus this
+
+    [[nodiscard]] bool validate() const;
+};
+
+/// Finds every module's LED in a view from frames with any lit sets: one at a time between backgrounds, patterns with
+/// or without complements, repeats, colours. Three passes over the frames: where does anything blink (SpotFinder); what
+/// does it blink (a series per candidate, matchSeries); what does its light look like (per pixel the least-squares
+/// amplitude of the module's word, fitSpot). Memory grows with candidates times frames, never pictures times frames.
+///
+/// Every module is either in `found` or in `undetected` with the reason:
+///   NotFound   never or always lit; no spot blinks its word; its spot has not the shape of an LED
+///   Ambiguous  another module has the same word; another word fits its spot as well; two spots of similar strength
+///              blink its word (a reflection less than `reflectionRatio` weaker)
+/// A spot shared by two LEDs is separated where both centres can be fitted, else neither is reported.
+/// @param modules  all modules of the skin; a frame that lights any other is an error
+/// @param frames   in the order in which they were taken
+/// @param load     called for each frame up to three times
+/// Fails with a sentence on a loader error (passed on), frames of different sizes, lit sets that make no sense, and
+/// "cancelled". Throws std::logic_error on invalid options.
+[[nodiscard]] tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<const ModuleId> modules,
+                                                                 std::span<const FrameInfo> frames,
+                                                                 const FrameLoader& load,
+                                                                 const DecoderOptions& options = {},
+                                                                 const RunContext& context = {});
+
+/// 8-bit grey of what a loader returned.
+[[nodiscard]] cv::Mat toGrey(const cv::Mat& frame);
+
+}  // namespace skincal

@@ -1,0 +1,84 @@
+#include "core/vision/image_noise.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+namespace skincal {
+namespace {
+
+constexpr int kStride = 4;
+
+// Half-width that holds 68.27 % of |difference|, as a continuous number: a difference of j stands for j ± 0.5.
+double centralSpread(const std::uint32_t* counts, int size, double total) {
+    const double wanted = 0.6827 * total;
+    double below = 0;
+    for (int j = 0; j < size; ++j) {
+        const double here = counts[j];
+        if (below + here >= wanted) {
+            const double low = j == 0 ? 0.0 : j - 0.5;
+            return low + (j + 0.5 - low) * (wanted - below) / here;
+        }
+        below += here;
+    }
+    return size - 0.5;
+}
+
+}  // namespace
+
+void ImageNoiseEstimator::add(const cv::Mat& a, const cv::Mat& b) {
+    for (int y = kStride / 2; y < a.rows; y += kStride) {
+        const auto* pa = a.ptr<std::uint8_t>(y);
+        const auto* pb = b.ptr<std::uint8_t>(y);
+        for (int x = kStride / 2; x + 1 < a.cols; x += kStride) {
+            // Clipped values have lost their noise.
+            if (std::max({pa[x], pb[x], pa[x + 1], pb[x + 1]}) >= 250 ||
+                std::min({pa[x], pb[x], pa[x + 1], pb[x + 1]}) <= 3)
+                continue;
+            const int level = (pa[x] + pb[x]) / 2 * kClasses / 256;
+            const int difference = std::min(std::abs((pa[x] - pb[x]) - (pa[x + 1] - pb[x + 1])), kDifferences - 1);
+            ++histogram_[static_cast<std::size_t>(level)][static_cast<std::size_t>(difference)];
+        }
+    }
+}
+
+ImageNoise ImageNoiseEstimator::estimate() const {
+    constexpr double kFewest = 200;
+    Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d g = Eigen::Vector2d::Zero();
+    double weights = 0;
+    double mean = 0;
+    int classes = 0;
+    for (int level = 0; level < kClasses; ++level) {
+        const auto& counts = histogram_[static_cast<std::size_t>(level)];
+        const double total = std::accumulate(counts.begin(), counts.end(), 0.0);
+        if (total < kFewest)
+            continue;
+        const double spread = centralSpread(counts.data(), kDifferences, total);
+        // Two pixels in two pictures: four independent draws.
+        const double variance = spread * spread / 4;
+        const Eigen::Vector2d row(1.0, (level + 0.5) * 256.0 / kClasses);
+        const double weight = total / (variance * variance + 1e-3);
+        H += weight * row * row.transpose();
+        g += weight * variance * row;
+        weights += weight;
+        mean += weight * variance;
+        ++classes;
+    }
+    if (classes == 0)
+        return {};
+    constexpr double kQuantisation = 1.0 / 12;
+    ImageNoise noise{std::max(mean / weights, kQuantisation), 0.0};
+    if (classes == 1)
+        return noise;
+    const Eigen::Vector2d line = H.ldlt().solve(g);
+    if (line[1] <= 0)
+        return noise;
+    if (line[0] >= kQuantisation)
+        return {line[0], line[1]};
+    return {kQuantisation, std::max(0.0, (g[1] - kQuantisation * H(0, 1)) / H(1, 1))};
+}
+
+}  // namespace skincal

@@ -1,0 +1,85 @@
+#include "core/vision/lit_words.h"
+
+#include <fmt/format.h>
+
+#include <opencv2/imgproc.hpp>
+#include <unordered_map>
+
+namespace skincal {
+
+tl::expected<LitWords, std::string> litWords(std::span<const ModuleId> modules, std::span<const FrameInfo> frames) {
+    std::unordered_map<ModuleId, std::size_t> index;
+    for (std::size_t i = 0; i < modules.size(); ++i)
+        index.emplace(modules[i], i);
+
+    LitWords words;
+    for (const FrameInfo& frame : frames) {
+        for (const LitModule& lit : frame.lit) {
+            if (!lit.colour)
+                continue;
+            for (const int level : *lit.colour) {
+                if (level != 0 && level != 1)
+                    return tl::unexpected(fmt::format("{}: module {} is lit in a colour that is not made of 0 and 1",
+                                                      frame.file, lit.module.value));
+                words.coloured = words.coloured || level == 0;
+            }
+        }
+    }
+    words.lit.resize(modules.size());
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+        const std::size_t first = words.planes.size();
+        if (words.coloured) {
+            for (int channel = 0; channel < 3; ++channel)
+                words.planes.push_back({k, channel});
+        } else {
+            words.planes.push_back({k, -1});
+        }
+        std::unordered_map<ModuleId, bool> seen;
+        for (const LitModule& lit : frames[k].lit) {
+            const auto found = index.find(lit.module);
+            if (found == index.end())
+                return tl::unexpected(fmt::format("{}: lights module {}, which the skin does not have", frames[k].file,
+                                                  lit.module.value));
+            if (!seen.emplace(lit.module, true).second)
+                return tl::unexpected(fmt::format("{}: lights module {} twice", frames[k].file, lit.module.value));
+            auto& word = words.lit[found->second];
+            if (!words.coloured) {
+                word.push_back(first);
+                continue;
+            }
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                // Colours are given as RGB, pictures are BGR.
+                if (!lit.colour || (*lit.colour)[2 - channel] == 1)
+                    word.push_back(first + channel);
+            }
+        }
+    }
+    return words;
+}
+
+tl::expected<FramePixels, std::string> FramePixels::make(cv::Mat picture, const std::string& file, cv::Size expected,
+                                                         bool coloured) {
+    if (picture.empty())
+        return tl::unexpected(file + ": the picture is empty");
+    if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3))
+        return tl::unexpected(file + ": expected an 8-bit grey or colour picture");
+    if (expected.area() > 0 && picture.size() != expected)
+        return tl::unexpected(fmt::format("{}: expected {} x {} pixels as in the view's first frame, found {} x {}",
+                                          file, expected.width, expected.height, picture.cols, picture.rows));
+    if (coloured && picture.channels() != 3)
+        return tl::unexpected(file + ": a grey picture of LEDs that were lit in colours");
+    return FramePixels(std::move(picture));
+}
+
+cv::Mat FramePixels::plane(int channel) const {
+    if (picture_.channels() == 1)
+        return picture_;
+    cv::Mat plane;
+    if (channel >= 0)
+        cv::extractChannel(picture_, plane, channel);
+    else
+        cv::transform(picture_, plane, cv::Matx13f(1.0F / 3, 1.0F / 3, 1.0F / 3));
+    return plane;
+}
+
+}  // namespace skincal

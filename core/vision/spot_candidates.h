@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "core/vision/image_noise.h"
+#include "core/vision/lit_words.h"
+
+namespace skincal {
+
+struct SpotCandidateOptions {
+    double minContrast = 4;       ///< grey levels above the surroundings, after smoothing
+    double noiseFactor = 7;       ///< … and this many times the spread of the contrast map
+    double smoothing_px = 1.2;    ///< standard deviation of the smoothing, about that of a spot
+    double minDistance_px = 2.5;  ///< of two candidates
+    int surroundings_px = 15;     ///< side of the square that counts as a spot's surroundings
+
+    [[nodiscard]] bool validate() const;
+};
+
+/// A place whose brightness jumps between frames.
+struct SpotCandidate {
+    int x = 0;
+    int y = 0;
+    double contrast = 0;
+};
+
+/// First pass over a view: remembers for every pixel the largest jump between one frame and the next, and the largest
+/// flash (a jump that the frame after takes back), both after smoothing. Slow drift of the lighting leaves no trace in
+/// them, and an LED that shines in a single frame of thousands stands out as much as one that blinks all the time. The
+/// outline of something that moves jumps, and would hide the LEDs that it passes, but hardly flashes.
+/// The memory needed does not depend on the number of frames.
+class SpotFinder {
+  public:
+    explicit SpotFinder(const SpotCandidateOptions& options = {});
+
+    /// Frames in the order in which they were taken, all of one size.
+    void add(const FramePixels& frame, bool coloured);
+    [[nodiscard]] ImageNoise noise() const { return noise_.estimate(); }
+    /// Local maxima that rise above their surroundings by more than the noise, strongest first, at most `most`. A lamp
+    /// that flickers over a large area is no candidate; the outline of something that moved may be.
+    [[nodiscard]] std::vector<SpotCandidate> candidates(std::size_t most) const;
+
+  private:
+    SpotCandidateOptions options_;
+    ImageNoiseEstimator noise_;
+    std::vector<cv::Mat> last_;        ///< 8-bit plane of the frame before, one per channel
+    std::vector<cv::Mat> lastSmooth_;  ///< the same, smoothed, 16-bit, times 16
+    std::vector<cv::Mat> lastStep_;    ///< from the frame before that to it, signed
+    cv::Mat jump_;
+    cv::Mat flash_;
+};
+
+}  // namespace skincal

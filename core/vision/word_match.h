@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/vision/lit_words.h"
+
+namespace skincal {
+
+struct WordMatchOptions {
+    double outlier = 5;              ///< a plane that is off by more standard deviations than this counts as disturbed
+    double maxDisturbed = 0.2;       ///< share of the planes that may be disturbed
+    double minSignificance = 6;      ///< amplitude over its standard deviation
+    double minMargin = 20;           ///< lead over any other explanation, in -2 log likelihood
+    double maxReducedCost = 4;       ///< misfit of the undisturbed planes over the noise
+    double brightnessSpread = 0.05;  ///< how evenly one LED shines from plane to plane, relative
+    double colourSpread = 0.1;       ///< the same between colours, where LEDs are lit in colours
+    int shortlist = 8;               ///< words examined robustly per series
+
+    [[nodiscard]] bool validate() const;
+};
+
+/// The words of all modules, made ready for matching: projected off a constant per channel and a straight drift.
+struct Codebook {
+    Eigen::MatrixXd drift;                      ///< planes x (channels + 1), orthonormal; no slope below 8 planes
+    std::vector<std::size_t> channelOf;         ///< per plane, 0 … channels-1
+    std::vector<std::vector<std::size_t>> lit;  ///< per module, as in LitWords
+    std::vector<double> energy;                 ///< per module, squared norm of its word off the drift
+    std::vector<std::size_t> representative;    ///< per module, the first module with the same word
+    bool coloured = false;
+
+    /// False where the word is constant (never or always lit) or looks like drift: nothing can find such a module.
+    [[nodiscard]] bool blinks(std::size_t module) const { return energy[module] > 0.2; }
+    [[nodiscard]] std::size_t planes() const { return channelOf.size(); }
+};
+[[nodiscard]] Codebook makeCodebook(const LitWords& words);
+
+enum class SeriesVerdict {
+    Matched,    ///< one word, or the sum of two, explains the series and nothing else does
+    Ambiguous,  ///< another explanation does nearly as well; `words` holds the best one
+    Unlike,     ///< blinks, but like no word nor sum of two; `words` holds the nearest word
+    Dark,       ///< no word has light in it
+};
+
+struct SeriesMatch {
+    SeriesVerdict verdict = SeriesVerdict::Dark;
+    std::vector<std::size_t> words;  ///< module positions, brightest first, at most 2
+    std::vector<double> amplitudes;  ///< grey levels, same order
+    std::vector<std::uint8_t> used;  ///< per plane, 0 where it was disturbed
+    double margin = 0;               ///< lead over the runner-up, -2 log likelihood
+    std::optional<std::size_t> runnerUp{};
+};
+
+/// Whose LED is it? Maximum likelihood over modules u (and, where no single word will do, pairs) of
+///   y_k = intercept + slope t_k + sum_u c_u w_u[k] + noise,   c_u > 0,
+/// each plane's misfit capped at `outlier` standard deviations, so that a passing hand or a flash costs a plane and not
+/// the decision. The capped likelihoods of the best and the second-best explanation (no light at all included) must
+/// differ by `minMargin`. One-at-a-time words have a single lit plane and hence no redundancy: there a flash exactly
+/// in that frame looks like the LED; the shape of the spot has to decide.
+/// @param series  one value per plane of the codebook, grey levels
+/// @param sigma   standard deviation of a value from camera noise alone, > 0
+/// Throws std::logic_error on a size mismatch or bad options.
+[[nodiscard]] SeriesMatch matchSeries(const Codebook& codebook, std::span<const double> series, double sigma,
+                                      const WordMatchOptions& options = {});
+
+/// Weights that turn pixel values over the planes into the amplitude of each word in `words` (least squares on drift
+/// and words over the planes in `used`): one row per word, one column per plane. Empty when they can't be separated.
+[[nodiscard]] Eigen::MatrixXd amplitudeWeights(const Codebook& codebook, std::span<const std::size_t> words,
+                                               std::span<const std::uint8_t> used);
+
+/// Orthonormal basis of what drift and `words` can explain over the planes in `used`: planes x unknowns, zero rows for
+/// planes not used. What it leaves of a pixel's values is light that follows none of them.
+[[nodiscard]] Eigen::MatrixXd explainedSpace(const Codebook& codebook, std::span<const std::size_t> words,
+                                             std::span<const std::uint8_t> used);
+
+}  // namespace skincal

@@ -1,0 +1,97 @@
+#include "core/workflow/calibrate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace skincal {
+namespace {
+
+tl::expected<ViewDetections, CalibrateError> detect(const Recording& recording, std::size_t v,
+                                                    const std::vector<ModuleId>& modules,
+                                                    const RecordingFrameLoader& load, const CalibrateOptions& options,
+                                                    const RunContext& context) {
+    const RecordedView& view = recording.views[v];
+    if (view.frames.empty())
+        return ViewDetections{view.name, view.detections, {}};
+    const FrameLoader loadFrameOfView = [&](std::size_t frame) { return load(v, frame); };
+    RunContext part = context;
+    part.report = [&](std::string_view, double done) {
+        context.report("reading frames", (static_cast<double>(v) + done) / static_cast<double>(recording.views.size()));
+    };
+    const bool paper = options.method == Method::Paper && suitsPaperDetector(view.frames);
+    auto found = paper ? detectPaper(view.name, modules, view.frames, loadFrameOfView, options.paperDetector, part)
+                       : decodeView(view.name, modules, view.frames, loadFrameOfView, options.decoder, part);
+    if (!found)
+        return tl::unexpected(CalibrateError{found.error().message, !found.error().cancelled, found.error().cancelled});
+    return *found;
+}
+
+/// The operator's word: a rejected detection counts as not found.
+void applyDecisions(const Recording& recording, ViewDetections& view) {
+    for (const Decision& decision : recording.decisions) {
+        if (decision.view != view.name || decision.verdict != "rejected")
+            continue;
+        const auto removed =
+            std::erase_if(view.found, [&](const LedDetection& d) { return d.module == decision.module; });
+        if (removed > 0)
+            view.undetected.push_back(
+                {decision.module, DetectionVerdict::NotFound,
+                 "rejected by the operator" + (decision.reason.empty() ? "" : ": " + decision.reason)});
+    }
+}
+
+}  // namespace
+
+std::string_view name(Method method) {
+    return method == Method::Paper ? "paper" : "sturdy";
+}
+
+std::optional<Method> methodFromName(std::string_view text) {
+    for (const Method method : {Method::Paper, Method::Sturdy}) {
+        if (name(method) == text)
+            return method;
+    }
+    return std::nullopt;
+}
+
+RecordingFrameLoader framesOf(const std::filesystem::path& directory, const Recording& recording) {
+    return [directory, &recording](std::size_t view, std::size_t frame) -> tl::expected<cv::Mat, std::string> {
+        auto picture = loadFrame(directory, recording.views[view].frames[frame], recording.camera);
+        if (!picture)
+            return tl::unexpected(picture.error().message());
+        return *picture;
+    };
+}
+
+tl::expected<Measurements, CalibrateError> measure(const Recording& recording, const RecordingFrameLoader& load,
+                                                   const CalibrateOptions& options, const RunContext& context) {
+    Measurements measurements{recording.skin, recording.gravity, recording.camera, {}};
+    std::vector<ModuleId> modules;
+    for (const SkinModule& module : recording.skin.modules)
+        modules.push_back(module.id);
+    for (std::size_t v = 0; v < recording.views.size(); ++v) {
+        auto view = detect(recording, v, modules, load, options, context);
+        if (!view)
+            return tl::unexpected(view.error());
+        applyDecisions(recording, *view);
+        measurements.views.push_back(std::move(*view));
+    }
+    return measurements;
+}
+
+tl::expected<BodyModel, CalibrateError> calibrate(const Recording& recording, const RecordingFrameLoader& load,
+                                                  const CalibrateOptions& options, const RunContext& context) {
+    const auto measurements = measure(recording, load, options, context);
+    if (!measurements)
+        return tl::unexpected(measurements.error());
+    auto body = options.method == Method::Paper ? calibratePaper(*measurements, options.paper, context)
+                                                : calibrateSturdy(*measurements, options.sturdy, context);
+    if (!body)
+        return tl::unexpected(CalibrateError{body.error().message(), false, body.error().code == ErrorCode::Cancelled});
+    body->generator.version = SKINCAL_VERSION;
+    body->generator.options["method"] = std::string(name(options.method));
+    return *body;
+}
+
+}  // namespace skincal

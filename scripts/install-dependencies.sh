@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Installs with apt what building, running and testing need and this machine lacks.
+#   scripts/install-dependencies.sh [--developer]    also what coverage, clang-tidy and fuzzing need
+set -euo pipefail
+
+packages=(
+  git cmake g++ ninja-build ccache pkg-config
+  libeigen3-dev libceres-dev libopencv-dev libboost-graph-dev libvtk9-dev libcli11-dev nlohmann-json3-dev
+  libexpected-dev libfmt-dev libssl-dev
+  libgtest-dev libgmock-dev libbenchmark-dev liburdfdom-dev clang-format-14
+  xvfb xauth fonts-dejavu-core
+)
+if [ "${1:-}" = --developer ]; then
+  packages+=(clang-14 clang-tidy-14 libclang-rt-14-dev gcovr)
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  if [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
+    missing+=("$package")
+  fi
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+sudo=()
+[ "$(id -u)" -eq 0 ] || sudo=(sudo)
+echo "Installing ${missing[*]}"
+"${sudo[@]}" apt-get update -qq
+"${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}" >/dev/null

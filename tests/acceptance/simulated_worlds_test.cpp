@@ -1,0 +1,133 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/estimation/compare.h"
+#include "core/study/paper_experiments.h"
+#include "core/workflow/simulated_recording.h"
+
+namespace skincal {
+namespace {
+
+std::optional<BodyComparison> errorOf(const World& world, const BodyModel& body) {
+    std::vector<NamedPose> found;
+    std::vector<NamedPose> real;
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+        real.push_back({world.skin.modules[u].id, world.T_r_u[u]});
+        if (body.modules[u].T_body_module)
+            found.push_back({body.modules[u].id, *body.modules[u].T_body_module});
+    }
+    const auto difference = compareBodies(found, real);
+    return difference ? std::optional(*difference) : std::nullopt;
+}
+
+class SimulatedWorldsTable : public testing::TestWithParam<std::string> {};
+
+TEST_P(SimulatedWorldsTable, AreCalibrated) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        const World world = buildWorld(*findScenario(GetParam()), seed);
+        const Recording recording = recordingOf(world);
+        const auto body = calibrate(recording, framesOf(world, recording));
+        ASSERT_TRUE(body) << body.error().message;
+        const auto error = errorOf(world, *body);
+        ASSERT_TRUE(error);
+        EXPECT_GE(error->compared * 10, world.T_r_u.size() * 9);
+        EXPECT_LT(error->positionRms, 1.5e-3) << "seed " << seed;
+        EXPECT_LT(error->rotationRms, 1.5 * kDegree) << "seed " << seed;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, SimulatedWorldsTable,
+                         testing::Values("arm", "cylinder", "plane", "freeform", "shoe-sole", "mixed-shapes",
+                                         "outliers", "demo", "one-at-a-time", "coded", "reflection", "flicker",
+                                         "coloured", "person"),
+                         [](const auto& parameter) {
+                             std::string name = parameter.param;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+TEST(SimulatedWorlds, ThePapersDetectorCalibratesPicturesOfOneAtATime) {
+    const World world = buildWorld(*findScenario("one-at-a-time"), 1);
+    const Recording recording = recordingOf(world);
+    CalibrateOptions options;
+    options.method = Method::Paper;
+    const auto body = calibrate(recording, framesOf(world, recording), options);
+    ASSERT_TRUE(body);
+    EXPECT_EQ(body->generator.method, "paper");
+    EXPECT_GT(body->quality.modulesPlaced, 0U);
+}
+
+TEST(SimulatedWorlds, ThePapersColoursAreALitSetLikeAnyOther) {
+    const World world = buildWorld(*findScenario("coloured"), 1);
+    const Recording recording = recordingOf(world);
+    CalibrateOptions options;
+    options.method = Method::Paper;
+    const auto measurements = measure(recording, framesOf(world, recording), options);
+    ASSERT_TRUE(measurements);
+    std::size_t found = 0;
+    for (const ViewDetections& view : measurements->views)
+        found += view.found.size();
+    EXPECT_GT(found, 10U);
+}
+
+TEST(SimulatedWorlds, TheOperatorsRejectionsCount) {
+    const World world = buildWorld(*findScenario("plane"), 1);
+    Recording recording = recordingOf(world);
+    const ModuleId id = recording.views[0].detections[0].module;
+    recording.decisions.push_back({"view0", id, "rejected", "a lamp"});
+    const auto measurements = measure(recording, framesOf(world, recording));
+    ASSERT_TRUE(measurements);
+    EXPECT_EQ(measurements->views[0].found.size() + 1, recording.views[0].detections.size());
+    EXPECT_THAT(measurements->views[0].undetected.back().reason, testing::HasSubstr("a lamp"));
+}
+
+// Somebody who walks through may hide LEDs; what is found all the same is where it is.
+TEST(SimulatedWorlds, AMovingPersonNeverBecomesAModule) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        const World world = buildWorld(*findScenario("person"), seed);
+        const Recording recording = recordingOf(world);
+        const auto measurements = measure(recording, framesOf(world, recording));
+        ASSERT_TRUE(measurements);
+        const auto index = world.skin.indexById();
+        for (std::size_t v = 0; v < measurements->views.size(); ++v) {
+            for (const LedDetection& d : measurements->views[v].found) {
+                const std::size_t u = index.at(d.module);
+                const auto real = world.scenario.camera.project(world.T_r_v[v].inverse() *
+                                                                (world.T_r_u[u] * world.skin.templateOf(u).led));
+                ASSERT_TRUE(real);
+                EXPECT_LT((d.pixel - *real).norm(), 1);
+            }
+        }
+    }
+}
+
+TEST(SimulatedWorlds, CancellingStopsPictureAndNumberWork) {
+    RunContext context;
+    context.isCancelled = [] { return true; };
+    for (const char* name : {"coded", "plane"}) {
+        const World world = buildWorld(*findScenario(name), 1);
+        const Recording recording = recordingOf(world);
+        const auto body = calibrate(recording, framesOf(world, recording), {}, context);
+        ASSERT_FALSE(body);
+        EXPECT_TRUE(body.error().cancelled);
+    }
+}
+
+TEST(PaperStudy, GivesEveryRowOfThePaperWithAFiniteBound) {
+    PaperStudyOptions options;
+    options.trials = 2;
+    const PaperStudy study = runPaperStudy(options);
+    EXPECT_EQ(study.rows.size(), 33U);
+    for (const ExperimentRow& row : study.rows) {
+        EXPECT_TRUE(row.ours.mean) << row.experiment << row.quantity;
+        if (row.bound) {
+            EXPECT_GT(*row.bound, 0) << row.experiment << row.quantity;
+        }
+    }
+    EXPECT_THAT(studyTable(study), testing::HasSubstr("| Table I, 0.6 m, flat | shift along z, mm | 20.00 | 19.53 |"));
+}
+
+}  // namespace
+}  // namespace skincal

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
+
+#include "core/formats/body_json.h"
+#include "core/formats/image_header.h"
+#include "core/formats/recording_parse.h"
+#include "core/formats/truth_json.h"
+
+namespace skincal::test {
+
+/// What a CSV is read against: two modules and two views.
+inline Recording smallRecording() {
+    Recording recording;
+    recording.skin.templates = {paperHexagon()};
+    recording.skin.modules = {{ModuleId(17), 0}, {ModuleId(23), 0}};
+    recording.camera.width = 640;
+    recording.camera.height = 480;
+    recording.camera.fx = recording.camera.fy = 500;
+    recording.views = {{"view0", {}, {}}, {"view1", {}, {}}};
+    return recording;
+}
+
+/// An error has words and fits on one line.
+inline void check(const FileError& error) {
+    if (error.problem.empty() || error.message().find('\n') != std::string::npos)
+        throw std::logic_error("an error without words or of several lines");
+}
+
+/// What was read can be written and reads the same.
+inline void checkRoundTrip(const BodyModel& body) {
+    const auto again = parseBodyJson(bodyToJson(body), "again.body.json");
+    if (!again || again->modules.size() != body.modules.size() || again->views.size() != body.views.size())
+        throw std::logic_error("a body that does not survive being written");
+}
+
+/// Feeds bytes to one of the readers; the first byte says which. Whatever it holds, they return; an answer that breaks
+/// their promises throws.
+inline void readAnything(std::string_view bytes) {
+    if (bytes.empty())
+        return;
+    const std::string_view text = bytes.substr(1);
+    Recording recording = smallRecording();
+    switch (static_cast<unsigned char>(bytes.front()) % 6) {
+        case 0:
+            if (const auto result = parseRecordingJson(text, "recording.json"); !result)
+                check(result.error());
+            break;
+        case 1:
+            if (const auto result = parseGravityCsv(text, "gravity.csv", recording); !result)
+                check(result.error());
+            break;
+        case 2:
+            if (const auto result = parseDetectionsCsv(text, "detections.csv", recording); !result)
+                check(result.error());
+            break;
+        case 3:
+            if (const auto result = parseImageHeader(text); !result && result.error().empty())
+                throw std::logic_error("an error without words");
+            break;
+        case 4: {
+            const auto result = parseBodyJson(text, "a.body.json");
+            if (result)
+                checkRoundTrip(*result);
+            else
+                check(result.error());
+            break;
+        }
+        default:
+            if (const auto result = parseTruthJson(text, "truth.json"); !result)
+                check(result.error());
+    }
+}
+
+}  // namespace skincal::test

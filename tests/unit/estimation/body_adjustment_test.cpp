@@ -1,0 +1,312 @@
+#include "core/estimation/body_adjustment.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/estimation/synthetic.h"
+
+namespace skincal {
+namespace {
+
+SyntheticOptions twoPatches() {
+    SyntheticOptions options;
+    options.patches = {{3, 3, 0.08}, {3, 2, 0, makeIsometry(so3Exp({0.3, 0.2, 0.4}), {0.15, 0.02, -0.01}), true}};
+    options.views = 3;
+    options.poses = 8;
+    return options;
+}
+
+BodyState disturbed(Random& random, const BodyState& truth, std::size_t fixedView) {
+    BodyState start = truth;
+    for (auto& T : start.T_r_u)
+        T = perturbed(random, *T, 0.05, 0.003);
+    for (std::size_t v = 0; v < start.T_r_v.size(); ++v) {
+        if (v != fixedView)
+            start.T_r_v[v] = perturbed(random, *start.T_r_v[v], 0.02, 0.005);
+    }
+    for (AccelerometerCalibration& c : start.accelerometers)
+        c = {};
+    start.up_r.clear();
+    return start;
+}
+
+TEST(AdjustBody, RecoversTheTruthFromAPerturbedStart) {
+    Random random(1, "recover");
+    for (int i = 0; i < 5; ++i) {
+        const SyntheticWorld world = makeWorld(random, twoPatches());
+        const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+        const AdjustmentInput input = world.input(gravity);
+        const auto found = adjustBody(input, disturbed(random, world.state(), 0), 0, std::nullopt);
+        ASSERT_TRUE(found) << found.error().message();
+        EXPECT_TRUE(found->summary.usable);
+        EXPECT_GT(found->summary.iterations, 1);
+        EXPECT_LT(found->summary.finalCost, 1e-4);
+        EXPECT_GT(found->summary.initialCost, 1);
+        EXPECT_EQ(found->summary.residuals, 2 * input.pixels.size() + 3 * world.measurements.gravity.size() +
+                                                3 * input.links.size() + 6 * world.T_r_u.size());
+        EXPECT_LT(largestDifference(found->state.T_r_u, world.T_r_u).angle, 1e-4);
+        EXPECT_LT(largestDifference(found->state.T_r_u, world.T_r_u).distance, 1e-5);
+        EXPECT_LT(largestDifference(found->state.T_r_v, world.T_r_v).distance, 1e-4);
+        for (std::size_t p = 0; p < world.up_r.size(); ++p)
+            EXPECT_LT((*found->state.up_r[0][p] - world.up_r[p]).norm(), 1e-4);
+    }
+}
+
+TEST(AdjustBody, TheGaugeKeepsItsPose) {
+    Random random(2, "gauge");
+    const SyntheticWorld world = makeWorld(random, twoPatches());
+    const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+    const AdjustmentInput input = world.input(gravity);
+    const BodyState start = disturbed(random, world.state(), 99);
+    const auto byView = adjustBody(input, start, 2, std::nullopt).value();
+    EXPECT_LT(poseDifference(*byView.state.T_r_v[2], *start.T_r_v[2]).angle, 1e-12);
+    EXPECT_EQ(byView.state.T_r_v[2]->translation(), start.T_r_v[2]->translation());
+    const auto byModule = adjustBody(input, start, std::nullopt, 4).value();
+    EXPECT_LT(poseDifference(*byModule.state.T_r_u[4], *start.T_r_u[4]).angle, 1e-12);
+    EXPECT_EQ(byModule.state.T_r_u[4]->translation(), start.T_r_u[4]->translation());
+    // Both give the same body, only placed elsewhere.
+    const Isometry3d T = *byModule.state.T_r_u[4] * byView.state.T_r_u[4]->inverse();
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
+        EXPECT_LT(poseDifference(T * *byView.state.T_r_u[u], *byModule.state.T_r_u[u]).distance, 1e-4);
+}
+
+TEST(AdjustBody, CalibratesAccelerometersUnlessToldNotTo) {
+    Random random(3, "sensors");
+    SyntheticOptions options = twoPatches();
+    options.bias = 0.3;
+    options.scale = 0.01;
+    options.poses = 15;
+    const SyntheticWorld world = makeWorld(random, options);
+    const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+    const AdjustmentInput input = world.input(gravity);
+    AdjustmentOptions plain;
+    plain.accelerometerSigma = 1e-3;
+    const auto found = adjustBody(input, disturbed(random, world.state(), 0), 0, std::nullopt, plain).value();
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+        EXPECT_LT((found.state.accelerometers[u].bias - world.accelerometers[u].bias).norm(), 0.01);
+        EXPECT_LT((found.state.accelerometers[u].scale - world.accelerometers[u].scale).norm(), 0.002);
+    }
+    AdjustmentOptions asIs;
+    asIs.calibrateAccelerometers = false;
+    const auto kept = adjustBody(input, disturbed(random, world.state(), 0), 0, std::nullopt, asIs).value();
+    for (const AccelerometerCalibration& c : kept.state.accelerometers) {
+        EXPECT_EQ(c.bias, Vector3d::Zero());
+        EXPECT_EQ(c.scale, Vector3d::Ones());
+    }
+}
+
+TEST(AdjustBody, OutliersWeighLittle) {
+    Random random(4, "outliers");
+    SyntheticOptions options = twoPatches();
+    options.pixelNoise = 0.05;
+    options.outliers = 0.1;
+    options.views = 5;
+    const SyntheticWorld world = makeWorld(random, options);
+    const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+    const auto robust = adjustBody(world.input(gravity), world.state(), 0, std::nullopt).value();
+    AdjustmentOptions squares;
+    squares.pixelLoss = squares.gravityLoss = squares.linkLoss = 0;
+    const auto plain = adjustBody(world.input(gravity), world.state(), 0, std::nullopt, squares).value();
+    EXPECT_LT(largestDifference(robust.state.T_r_u, world.T_r_u).distance, 1e-3);
+    EXPECT_GT(largestDifference(plain.state.T_r_u, world.T_r_u).distance,
+              3 * largestDifference(robust.state.T_r_u, world.T_r_u).distance);
+}
+
+TEST(AdjustBody, WhatHasNoPoseTakesNoPart) {
+    Random random(5, "absent");
+    const SyntheticWorld world = makeWorld(random, twoPatches());
+    const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+    BodyState start = world.state();
+    start.T_r_u[3].reset();
+    start.T_r_v[1].reset();
+    const auto found = adjustBody(world.input(gravity), start, 0, std::nullopt).value();
+    EXPECT_FALSE(found.state.T_r_u[3]);
+    EXPECT_FALSE(found.state.T_r_v[1]);
+    EXPECT_LT(poseDifference(*found.state.T_r_u[2], world.T_r_u[2]).distance, 1e-5);
+}
+
+TEST(AdjustBody, CancelledOrNothingToAdjust) {
+    Random random(6, "cancel");
+    const SyntheticWorld world = makeWorld(random, twoPatches());
+    const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+    const AdjustmentInput input = world.input(gravity);
+    RunContext context;
+    context.isCancelled = [] { return true; };
+    EXPECT_EQ(adjustBody(input, world.state(), 0, std::nullopt, {}, context).error().code, ErrorCode::Cancelled);
+    // In the middle of the iterations, too.
+    int calls = 0;
+    context.isCancelled = [&] { return ++calls > 2; };
+    const BodyState start = disturbed(random, world.state(), 0);
+    EXPECT_EQ(adjustBody(input, start, 0, std::nullopt, {}, context).error().code, ErrorCode::Cancelled);
+
+    const GravityTable silent(world.measurements.skin, {});
+    AdjustmentInput nothing = input;
+    nothing.gravity = &silent;
+    nothing.pixels.clear();
+    nothing.links.clear();
+    EXPECT_EQ(adjustBody(nothing, world.state(), 0, std::nullopt).error().code, ErrorCode::TooFewPoints);
+    EXPECT_EQ(adjustBody(input, world.state(), std::nullopt, std::nullopt).error().code, ErrorCode::TooFewPoints);
+}
+
+TEST(AdjustBody, BrokenContractsThrow) {
+    Random random(7, "contract");
+    const SyntheticWorld world = makeWorld(random, twoPatches());
+    const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+    AdjustmentInput input = world.input(gravity);
+    BodyState state = world.state();
+    const auto adjust = [&](const AdjustmentOptions& options = {}) {
+        (void)adjustBody(input, state, 0, std::nullopt, options);
+    };
+    std::vector<AdjustmentOptions> bad(10);
+    bad[0].accelerometerSigma = 0;
+    bad[1].linkSigma = 0;
+    bad[2].biasSigma = 0;
+    bad[3].scaleSigma = -1;
+    bad[4].gravity = 0;
+    bad[5].pixelSigmaFloor_px = 0;
+    bad[6].pixelLoss = -1;
+    bad[7].gravityLoss = -1;
+    bad[8].linkLoss = -1;
+    bad[9].maxIterations = 0;
+    for (const AdjustmentOptions& options : bad)
+        EXPECT_THROW(adjust(options), std::logic_error);
+    input.camera = nullptr;
+    EXPECT_THROW(adjust(), std::logic_error);
+    input = world.input(gravity);
+    input.gravityGroup.pop_back();
+    EXPECT_THROW(adjust(), std::logic_error);
+    input = world.input(gravity);
+    state.accelerometers.pop_back();
+    EXPECT_THROW(adjust(), std::logic_error);
+}
+
+TEST(PixelResidual, IsMeasuredMinusPredicted) {
+    Random random(8, "residual");
+    const SyntheticWorld world = makeWorld(random, twoPatches());
+    const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+    const AdjustmentInput input = world.input(gravity);
+    BodyState state = world.state();
+    PixelObservation o = input.pixels.at(5);
+    EXPECT_LT(pixelResidual(input, state, o)->norm(), 1e-9);
+    o.pixel += Vector2d(3, -4);
+    EXPECT_LT((*pixelResidual(input, state, o) - Vector2d(3, -4)).norm(), 1e-9);
+    BodyState behind = state;
+    behind.T_r_v[o.view]->linear() = behind.T_r_v[o.view]->linear() * so3Exp({3.14, 0, 0});
+    EXPECT_FALSE(pixelResidual(input, behind, o));
+    state.T_r_u[o.module].reset();
+    EXPECT_FALSE(pixelResidual(input, state, o));
+    state = world.state();
+    state.T_r_v[o.view].reset();
+    EXPECT_FALSE(pixelResidual(input, state, o));
+}
+
+TEST(EstimateUpDirections, UndoesCalibrationAndRotation) {
+    Random random(9, "up");
+    SyntheticOptions options = twoPatches();
+    options.bias = 0.3;
+    options.scale = 0.02;
+    const SyntheticWorld world = makeWorld(random, options);
+    const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
+    AdjustmentInput input = world.input(gravity);
+    for (std::size_t u = 0; u < input.gravityGroup.size(); ++u)
+        input.gravityGroup[u] = world.patchOf[u];
+    BodyState state = world.state();
+    for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
+        if (world.patchOf[u] == 1)
+            state.T_r_u[u].reset();
+    }
+    estimateUpDirections(input, state);
+    ASSERT_EQ(state.up_r.size(), 2U);
+    for (std::size_t p = 0; p < world.up_r.size(); ++p) {
+        EXPECT_LT((*state.up_r[0][p] - world.up_r[p]).norm(), 1e-9);
+        EXPECT_FALSE(state.up_r[1][p]);
+    }
+}
+
+/// Monte Carlo: sample covariance of the errors against the bound.
+void expectBoundMet(const SyntheticOptions& options, bool ofViews) {
+    Random random(10, "bound");
+    SyntheticOptions exact = options;
+    exact.pixelNoise = 0;
+    exact.accelerometerNoise = 0;
+    const SyntheticWorld world = makeWorld(random, exact);
+    const GravityTable exactGravity(world.measurements.skin, world.measurements.gravity);
+    AdjustmentOptions adjustment;
+    adjustment.accelerometerSigma = options.accelerometerNoise;
+    adjustment.pixelSigmaFloor_px = 1e-3;
+    adjustment.pixelLoss = adjustment.gravityLoss = adjustment.linkLoss = 0;
+    AdjustmentInput input = world.input(exactGravity);
+    // Play in the links is drawn as well: the true ports are off by it.
+    for (PixelObservation& o : input.pixels)
+        o.sigma_px = options.pixelNoise;
+    const std::vector<std::size_t> which{1, 2};
+    const auto bound = ofViews ? viewPoseBound(input, world.state(), which, 0, std::nullopt, adjustment)
+                               : modulePoseBound(input, world.state(), which, 0, std::nullopt, adjustment);
+    ASSERT_TRUE(bound);
+    ASSERT_EQ(bound->rows(), 12);
+    EXPECT_LT((*bound - bound->transpose()).norm(), 1e-9 * bound->norm());
+
+    constexpr int kRounds = 150;
+    Eigen::Matrix<double, 12, 1> squares = Eigen::Matrix<double, 12, 1>::Zero();
+    for (int round = 0; round < kRounds; ++round) {
+        AdjustmentInput noisy = input;
+        for (PixelObservation& o : noisy.pixels)
+            o.pixel += options.pixelNoise * Vector2d(random.normal(), random.normal());
+        for (PortPair& link : noisy.links)
+            link.port_a += world.T_r_u[link.a].linear().transpose() * random.normal3() * adjustment.linkSigma;
+        auto readings = world.measurements.gravity;
+        for (GravityReading& reading : readings)
+            reading.acceleration += options.accelerometerNoise * random.normal3();
+        const GravityTable gravity(world.measurements.skin, readings);
+        noisy.gravity = &gravity;
+        // Priors are measurements, too: the truth is drawn from them by shifting what they expect.
+        const auto found = adjustBody(noisy, world.state(), 0, std::nullopt, adjustment).value();
+        for (std::size_t i = 0; i < which.size(); ++i) {
+            const Isometry3d& T = ofViews ? *found.state.T_r_v[which[i]] : *found.state.T_r_u[which[i]];
+            const Isometry3d& truth = ofViews ? world.T_r_v[which[i]] : world.T_r_u[which[i]];
+            const auto row = static_cast<Eigen::Index>(6 * i);
+            squares.segment<3>(row) += so3Log(T.linear() * truth.linear().transpose()).cwiseAbs2() / kRounds;
+            squares.segment<3>(row + 3) += (T.translation() - truth.translation()).cwiseAbs2() / kRounds;
+        }
+    }
+    // Traces rather than single entries: 150 rounds fix one variance to 12 %, three of them to some 7 %.
+    for (Eigen::Index block = 0; block < 12; block += 3)
+        EXPECT_NEAR(squares.segment<3>(block).sum() / bound->diagonal().segment<3>(block).sum(), 1, 0.3) << block;
+}
+
+SyntheticOptions boundOptions() {
+    SyntheticOptions options;
+    options.patches = {{2, 2, 0.08}};
+    options.views = 3;
+    options.poses = 8;
+    options.pixelNoise = 0.1;
+    options.accelerometerNoise = 0.03;
+    return options;
+}
+
+TEST(PoseBounds, ModulesScatterAsForecast) {
+    expectBoundMet(boundOptions(), false);
+}
+
+TEST(PoseBounds, ViewsScatterAsForecast) {
+    expectBoundMet(boundOptions(), true);
+}
+
+TEST(PoseBounds, WhatTheDataDoNotFixIsRefused) {
+    Random random(11, "loose");
+    SyntheticOptions options = boundOptions();
+    options.poses = 0;
+    const SyntheticWorld world = makeWorld(random, options);
+    const GravityTable gravity(world.measurements.skin, {});
+    AdjustmentInput input = world.input(gravity);
+    input.links.clear();
+    // A module that only two pixels of one view tell about.
+    std::erase_if(input.pixels, [](const PixelObservation& o) { return o.module == 1 && o.view != 0; });
+    const auto loose = modulePoseBound(input, world.state(), {1}, 0, std::nullopt);
+    ASSERT_FALSE(loose);
+    EXPECT_EQ(loose.error().code, ErrorCode::DegeneratePoints);
+    EXPECT_EQ(viewPoseBound(input, world.state(), {1}, std::nullopt, std::nullopt).error().code,
+              ErrorCode::DegeneratePoints);
+}
+
+}  // namespace
+}  // namespace skincal

@@ -1,0 +1,38 @@
+#include "core/geometry/error.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <stdexcept>
+
+namespace skincal {
+namespace {
+
+TEST(Error, EveryCodeHasItsOwnName) {
+    std::set<std::string_view> names;
+    const int last = static_cast<int>(ErrorCode::NoDisplay);
+    for (int code = 0; code <= last; ++code) {
+        const std::string_view text = name(static_cast<ErrorCode>(code));
+        EXPECT_FALSE(text.empty()) << code;
+        EXPECT_TRUE(names.insert(text).second) << text;
+    }
+}
+
+TEST(Error, UnknownCodeIsABrokenContract) {
+    EXPECT_THROW((void)name(static_cast<ErrorCode>(1000)), std::logic_error);
+}
+
+TEST(Error, MessageWithoutNumbersIsTheName) {
+    EXPECT_EQ((CalibrationError{ErrorCode::Cancelled}.message()), "cancelled");
+}
+
+TEST(Error, MessageGivesTheNumbersInOrderOfTheirNames) {
+    EXPECT_EQ((CalibrationError{ErrorCode::TooFewPoints, {{"needed", 6}}}.message()), "too few points (needed 6)");
+    EXPECT_EQ((CalibrationError{ErrorCode::TooFewPoints, {{"needed", 6}, {"found", 4}}}.message()),
+              "too few points (found 4, needed 6)");
+    EXPECT_EQ((CalibrationError{ErrorCode::NotConverged, {{"cost", 0.125}}}.message()),
+              "the solver did not converge (cost 0.125)");
+}
+
+}  // namespace
+}  // namespace skincal

@@ -92,7 +92,8 @@ Measurements measurementsOf(const World& world) {
     return {world.skin, simulateGravity(world), world.scenario.camera, simulateDetections(world)};
 }
 
-std::optional<double> boundOf(const World& world, const Measurements& measurements, const PoseFunction& function) {
+std::optional<double> boundOf(const World& world, const Measurements& measurements, BoundOn which,
+                              const PoseFunction& function) {
     const GravityTable gravity(measurements.skin, measurements.gravity);
     const AdjustmentInput input = inputOf(world, measurements, gravity);
     BodyState truth;
@@ -109,21 +110,19 @@ std::optional<double> boundOf(const World& world, const Measurements& measuremen
     options.scaleSigma = world.scenario.sensors.scale;
     options.linkSigma = std::sqrt(2.0) * world.scenario.play.position;
     options.pixelSigmaFloor_px = 1e-3;
-    // Views and modules in two goes: what a study asks for depends on either, not on both.
-    const bool views = !world.T_r_v.empty();
-    std::vector<std::size_t> which(views ? world.T_r_v.size() : world.T_r_u.size());
-    for (std::size_t i = 0; i < which.size(); ++i)
-        which[i] = i;
-    const std::vector<std::size_t> moving(which.begin() + (views ? 0 : 1), which.end());
+    const bool views = which == BoundOn::Views;
+    std::vector<std::size_t> moving;
+    for (std::size_t i = views ? 0 : 1; i < (views ? world.T_r_v.size() : world.T_r_u.size()); ++i)
+        moving.push_back(i);
     const auto covariance = views ? viewPoseBound(input, truth, moving, std::nullopt, 0, options)
                                   : modulePoseBound(input, truth, moving, std::nullopt, 0, options);
     if (!covariance)
         return std::nullopt;
-    Eigen::VectorXd gradient(covariance->rows());
+    Eigen::MatrixXd J(function(world.T_r_v, world.T_r_u).size(), covariance->cols());
     for (std::size_t i = 0; i < moving.size(); ++i) {
         for (Eigen::Index axis = 0; axis < 6; ++axis) {
             constexpr double kStep = 1e-6;
-            std::array<double, 2> value{};
+            std::array<Eigen::VectorXd, 2> value;
             for (const int sign : {0, 1}) {
                 auto T_r_v = world.T_r_v;
                 auto T_r_u = world.T_r_u;
@@ -131,10 +130,10 @@ std::optional<double> boundOf(const World& world, const Measurements& measuremen
                 T = moved(T, axis, sign == 0 ? -kStep : kStep);
                 value.at(static_cast<std::size_t>(sign)) = function(T_r_v, T_r_u);
             }
-            gradient[static_cast<Eigen::Index>(6 * i) + axis] = (value[1] - value[0]) / (2 * kStep);
+            J.col(static_cast<Eigen::Index>(6 * i) + axis) = (value[1] - value[0]) / (2 * kStep);
         }
     }
-    return std::sqrt(std::max(0.0, gradient.dot(*covariance * gradient)));
+    return std::sqrt(std::max(0.0, (J * *covariance * J.transpose()).trace()));
 }
 
 std::optional<BodyPoses> posesOf(const BodyModel& body, bool needViews) {

@@ -27,12 +27,16 @@ namespace skincal {
 /// Measurements of a world whose views have been set.
 [[nodiscard]] Measurements measurementsOf(const World& world);
 
-/// A number computed from the poses of views and modules.
-using PoseFunction = std::function<double(const std::vector<Isometry3d>& T_r_v, const std::vector<Isometry3d>& T_r_u)>;
+/// Numbers computed from the poses of views and modules.
+using PoseFunction =
+    std::function<Eigen::VectorXd(const std::vector<Isometry3d>& T_r_v, const std::vector<Isometry3d>& T_r_u)>;
 
-/// Square root of the Cramer-Rao bound of such a number, from the bound of the poses and its numerical gradient. The
-/// gauge is the first module. Nothing where the data do not fix it.
-[[nodiscard]] std::optional<double> boundOf(const World& world, const Measurements& measurements,
+enum class BoundOn { Views, Modules };
+
+/// Root of the summed Cramer-Rao bounds of such numbers, from the bound of the poses and their numerical gradient:
+///   sqrt(trace(J C J^T)),  C the bound of the poses of all views, or of all modules
+/// The gauge is the first module. Nothing where the data do not fix it.
+[[nodiscard]] std::optional<double> boundOf(const World& world, const Measurements& measurements, BoundOn which,
                                             const PoseFunction& function);
 
 /// Poses of a body model in the order of world and views; nothing where any that `needed` names is missing.

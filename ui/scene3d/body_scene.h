@@ -23,10 +23,20 @@ namespace skincal {
 /// Outlines of the cameras that saw the body: pyramids as wide as the picture.
 [[nodiscard]] vtkSmartPointer<vtkPolyData> camerasOf(const BodyModel& body, double size);
 
-/// Puts a body into a renderer: boards, edges, LEDs, axes of the body's patches, cameras.
+/// Puts a body into a renderer: boards, edges, LEDs, cameras.
 void addBody(vtkRenderer& renderer, const BodyModel& body);
 
-/// Turns the camera to where the boards face, all of them in the picture.
-void lookAtBody(vtkRenderer& renderer, const BodyModel& body);
+/// What to keep free along the borders, as shares of the picture's width and height, each below a half.
+struct Margins {
+    double left = 0.03;
+    double right = 0.03;
+    double top = 0.04;
+    double bottom = 0.04;
+};
+
+/// Turns the camera to where the boards face and as near as all of them stay inside the margins.
+/// @param aspect  width over height of the picture.
+/// @return how much of the world the picture is high at the body's distance, m.
+double lookAtBody(vtkRenderer& renderer, const BodyModel& body, const Margins& margins, double aspect);
 
 }  // namespace skincal

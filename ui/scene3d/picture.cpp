@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 #include <vtkActor2D.h>
-#include <vtkCamera.h>
+#include <vtkCellArray.h>
 #include <vtkPNGWriter.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
@@ -33,10 +37,18 @@ void addText(vtkRenderer& renderer, const std::string& text, int size, double x,
     renderer.AddActor2D(actor);
 }
 
+std::array<double, 3> softInk(const PictureOptions& options) {
+    return options.dark ? std::array{0.66, 0.69, 0.73} : std::array{0.38, 0.41, 0.46};
+}
+
+int textSize(const PictureOptions& options) {
+    return std::max(12, options.height / 45);
+}
+
 void addLegend(vtkRenderer& renderer, const BodyModel& body, const PictureOptions& options) {
     const std::array<double, 3> ink = options.dark ? std::array{0.92, 0.93, 0.95} : std::array{0.13, 0.14, 0.17};
-    const std::array<double, 3> soft = options.dark ? std::array{0.66, 0.69, 0.73} : std::array{0.38, 0.41, 0.46};
-    const int size = std::max(12, options.height / 45);
+    const std::array<double, 3> soft = softInk(options);
+    const int size = textSize(options);
     const double step = 1.5 * size;
     const double left = 1.6 * size;
     double y = options.height - 2.6 * size;
@@ -59,6 +71,39 @@ void addLegend(vtkRenderer& renderer, const BodyModel& body, const PictureOption
     addText(renderer, figures + fmt::format("method {}", body.generator.method), size, left, 1.4 * size, soft);
 }
 
+/// A bar of a round length (1, 2 or 5 times a power of ten), at most a sixth of the picture's width.
+void addScaleBar(vtkRenderer& renderer, double metresPerPixel, const PictureOptions& options) {
+    const double longest = metresPerPixel * options.width / 6;
+    double length = std::pow(10, std::floor(std::log10(longest)));
+    for (const double factor : {5.0, 2.0}) {
+        if (length * factor <= longest) {
+            length *= factor;
+            break;
+        }
+    }
+    const std::array<double, 3> soft = softInk(options);
+    const int size = textSize(options);
+    const double right = options.width - 1.6 * size;
+    const double left = right - length / metresPerPixel;
+    const double y = 3.4 * size;
+    auto points = vtkSmartPointer<vtkPoints>::New();
+    auto lines = vtkSmartPointer<vtkCellArray>::New();
+    lines->InsertNextCell(4);
+    for (const auto& [px, py] : {std::pair{left, y + 0.4 * size}, {left, y}, {right, y}, {right, y + 0.4 * size}})
+        lines->InsertCellPoint(points->InsertNextPoint(px, py, 0));
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->SetLines(lines);
+    auto mapper = vtkSmartPointer<vtkPolyDataMapper2D>::New();
+    mapper->SetInputData(data);
+    auto bar = vtkSmartPointer<vtkActor2D>::New();
+    bar->SetMapper(mapper);
+    bar->GetProperty()->SetColor(soft[0], soft[1], soft[2]);
+    bar->GetProperty()->SetLineWidth(2);
+    renderer.AddActor2D(bar);
+    addText(renderer, fmt::format("{:g} mm", 1e3 * length), size, left, y + 0.8 * size, soft);
+}
+
 }  // namespace
 
 tl::expected<std::string, std::string> drawPicture(const BodyModel& body, const PictureOptions& options) {
@@ -76,8 +121,12 @@ tl::expected<std::string, std::string> drawPicture(const BodyModel& body, const 
     }
     renderer->GradientBackgroundOn();
     addBody(*renderer, body);
-    lookAtBody(*renderer, body);
+    // Room for the legend on the left and for a line below.
+    const double margin = 9.0 * textSize(options) / options.width;
+    const Margins margins{margin, 0.03, 0.04, 5.0 * textSize(options) / options.height};
+    const double height = lookAtBody(*renderer, body, margins, static_cast<double>(options.width) / options.height);
     addLegend(*renderer, body, options);
+    addScaleBar(*renderer, height / options.height, options);
 
     auto window = vtkSmartPointer<vtkRenderWindow>::New();
     window->SetOffScreenRendering(1);

@@ -26,10 +26,16 @@ struct LayoutOptions {
     int minSeparationViews = 2;
 };
 
-/// How far apart in the pictures the two LEDs of a link are, in units of the median distance over the links next to
-/// it (a pitch, foreshortened alike); the median over views. Nothing where too few views show both.
+/// How far apart in the pictures the two LEDs of a link are: times the distance that they would have as neighbours, at
+/// the scale (px/m, foreshortened alike) of the links round about. The lower quartile over views: a false detection at
+/// either end sets neighbours apart, hardly ever puts the ends of a cable together. Nothing where too few views show
+/// both.
+/// @param R_a_b  relative rotation of each link's modules from gravity; taken to lie flat where it could not be
+/// measured.
 [[nodiscard]] std::vector<std::optional<double>> linkSeparations(const Measurements& measurements,
-                                                                 const SkinGraph& graph, int minViews);
+                                                                 const SkinGraph& graph,
+                                                                 const std::vector<std::optional<Matrix3d>>& R_a_b,
+                                                                 double tooLong, int minViews);
 
 /// Graph, cables by all evidence there is, patches with their origins (METHOD.md, section 2, steps 1 and 2).
 [[nodiscard]] SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity,

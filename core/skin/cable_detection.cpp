@@ -47,12 +47,12 @@ LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const std::optio
             return verdict;
         }
     }
-    if (separation && *separation > options.maxSeparation_pitches) {
+    if (separation && *separation > options.maxSeparation) {
         verdict.kind = LinkKind::Cable;
         verdict.reason = LinkReason::Separation;
         verdict.explanation =
-            fmt::format("the LEDs are {:.1f} pitches apart in the pictures, neighbours {:.1f} at most", *separation,
-                        options.maxSeparation_pitches);
+            fmt::format("in the pictures the LEDs are {:.1f} times as far apart as those of neighbours, {:.1f} at most",
+                        *separation, options.maxSeparation);
         return verdict;
     }
     verdict.explanation = verdict.bend ? fmt::format("bend {:.1f}°, twist {:.1f}°: as neighbours have",
@@ -111,7 +111,7 @@ void settleContradictions(const SkinGraph& graph, std::vector<LinkVerdict>& verd
 }  // namespace
 
 bool CableOptions::validate() const {
-    return maxBend > 0 && maxBend <= kPi && maxTwist > 0 && maxTwist <= kPi && maxSeparation_pitches > 1;
+    return maxBend > 0 && maxBend <= kPi && maxTwist > 0 && maxTwist <= kPi && maxSeparation > 1;
 }
 
 Matrix3d flatNeighbourRotation(const Vector3d& port_a, const Vector3d& port_b) {
@@ -134,12 +134,12 @@ std::vector<LinkVerdict> detectCables(const Skin& skin, const SkinGraph& graph, 
     const auto& links = graph.links();
     if (!options.validate())
         throw std::logic_error("CableOptions out of range");
-    if (evidence.R_a_b.size() != links.size() || evidence.separation_pitches.size() != links.size())
+    if (evidence.R_a_b.size() != links.size() || evidence.separation.size() != links.size())
         throw std::logic_error("detectCables: evidence and graph differ in size");
     std::vector<LinkVerdict> verdicts;
     verdicts.reserve(links.size());
     for (std::size_t l = 0; l < links.size(); ++l) {
-        LinkVerdict verdict = judgeAlone(skin, links[l], evidence.R_a_b[l], evidence.separation_pitches[l], options);
+        LinkVerdict verdict = judgeAlone(skin, links[l], evidence.R_a_b[l], evidence.separation[l], options);
         // A module can't be its own neighbour, whatever anybody says.
         if (links[l].decided && links[l].a != links[l].b) {
             verdict.kind = *links[l].decided;

@@ -31,8 +31,8 @@ struct LinkVerdict {
 
 /// What was measured about the links of a graph, entry by entry; nothing where it could not be.
 struct CableEvidence {
-    std::vector<std::optional<Matrix3d>> R_a_b;             ///< relative rotation from gravity
-    std::vector<std::optional<double>> separation_pitches;  ///< distance in the pictures, in pitches
+    std::vector<std::optional<Matrix3d>> R_a_b;     ///< relative rotation from gravity
+    std::vector<std::optional<double>> separation;  ///< distance in the pictures, times that of neighbours
 };
 
 struct CableOptions {
@@ -40,8 +40,8 @@ struct CableOptions {
     double maxBend = 75 * kDegree;
     /// The mould holds the ports face to face. An uncalibrated accelerometer adds some 4 degrees, 25 is far beyond.
     double maxTwist = 25 * kDegree;
-    /// LEDs sit off centre, so neighbours' may be 1.6 times the median apart; 2.5 is beyond any.
-    double maxSeparation_pitches = 2.5;
+    /// Seen 60 degrees aside, a row of neighbours along the axis of the tilt is twice as long as one across it.
+    double maxSeparation = 2.2;
 
     [[nodiscard]] bool validate() const;
 };

@@ -207,7 +207,8 @@ TEST(LinkSeparations, NeighboursAreAPitchApartAndCablesFar) {
     links.push_back({ModuleId(5), 0, ModuleId(21), 3});
     links.push_back({ModuleId(1), 2, ModuleId(1), 3});
     const SkinGraph graph = buildSkinGraph(world.measurements.skin);
-    const auto found = linkSeparations(world.measurements, graph, 2);
+    const std::vector<std::optional<Matrix3d>> none(graph.links().size());
+    const auto found = linkSeparations(world.measurements, graph, none, 2.2, 2);
     ASSERT_EQ(found.size(), links.size());
     for (std::size_t l = 0; l + 2 < links.size(); ++l) {
         EXPECT_GT(found[l].value(), 0.5);
@@ -215,12 +216,12 @@ TEST(LinkSeparations, NeighboursAreAPitchApartAndCablesFar) {
     }
     EXPECT_GT(found[links.size() - 2].value(), 2.5);
     EXPECT_FALSE(found.back());
-    for (const auto& separation : linkSeparations(world.measurements, graph, 5))
+    for (const auto& separation : linkSeparations(world.measurements, graph, none, 2.2, 5))
         EXPECT_FALSE(separation);
     // Two links in a picture have nothing to be compared with.
     for (ViewDetections& view : world.measurements.views)
         std::erase_if(view.found, [](const LedDetection& d) { return d.module.value > 3; });
-    for (const auto& separation : linkSeparations(world.measurements, graph, 1))
+    for (const auto& separation : linkSeparations(world.measurements, graph, none, 2.2, 1))
         EXPECT_FALSE(separation);
 }
 

@@ -27,7 +27,7 @@ LinkVerdict judge(const Skin& skin, double bend, double twist, std::optional<dou
     const SkinGraph graph = buildSkinGraph(skin);
     CableEvidence evidence = noEvidence(graph);
     evidence.R_a_b[0] = arranged(skin, graph.links()[0], bend, twist);
-    evidence.separation_pitches[0] = separation;
+    evidence.separation[0] = separation;
     return detectCables(skin, graph, evidence).at(0);
 }
 
@@ -84,7 +84,7 @@ TEST(DetectCables, NothingSpeaksAgainstALinkWithoutEvidence) {
 }
 
 TEST(DetectCables, NeighboursMayBendAndTwistALittle) {
-    const LinkVerdict verdict = judge(pairOfHexagons(), 74 * kDegree, -24 * kDegree, 2.4);
+    const LinkVerdict verdict = judge(pairOfHexagons(), 74 * kDegree, -24 * kDegree, 2.1);
     EXPECT_EQ(verdict.kind, LinkKind::Adjacent);
     EXPECT_EQ(verdict.reason, LinkReason::Neighbours);
     EXPECT_NEAR(verdict.bend.value(), 74 * kDegree, 1e-9);
@@ -106,7 +106,7 @@ TEST(DetectCables, NamesBendTwistAndSeparation) {
     const LinkVerdict far = judge(pairOfHexagons(), 0.1, 0.1, 7.25);
     EXPECT_EQ(far.kind, LinkKind::Cable);
     EXPECT_EQ(far.reason, LinkReason::Separation);
-    EXPECT_THAT(far.explanation, HasSubstr("7.2 pitches apart in the pictures, neighbours 2.5 at most"));
+    EXPECT_THAT(far.explanation, HasSubstr("the LEDs are 7.2 times as far apart as those of neighbours, 2.2 at most"));
     EXPECT_TRUE(far.bend && far.twist);
 }
 
@@ -170,7 +170,7 @@ TEST(DetectCables, BrokenContractsThrow) {
     evidence.R_a_b.emplace_back();
     EXPECT_THROW((void)detectCables(skin, graph, evidence), std::logic_error);
     evidence = noEvidence(graph);
-    evidence.separation_pitches.clear();
+    evidence.separation.clear();
     EXPECT_THROW((void)detectCables(skin, graph, evidence), std::logic_error);
 
     std::vector<CableOptions> bad(6);
@@ -178,7 +178,7 @@ TEST(DetectCables, BrokenContractsThrow) {
     bad[1].maxBend = 4;
     bad[2].maxTwist = -1;
     bad[3].maxTwist = 4;
-    bad[4].maxSeparation_pitches = 1;
+    bad[4].maxSeparation = 1;
     bad[5].maxBend = std::nan("");
     EXPECT_TRUE(CableOptions{}.validate());
     for (const CableOptions& options : bad) {

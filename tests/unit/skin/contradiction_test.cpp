@@ -83,7 +83,7 @@ TEST(ContradictoryLinks, NoneIsTakenWhereNoneFits) {
 TEST(ContradictoryLinks, FarInThePicturesDoesNotPass) {
     Rivals rivals({{}, {}});
     rivals.evidence.R_a_b = {kFits, kFits};
-    rivals.evidence.separation_pitches = {1.0, 5.0};
+    rivals.evidence.separation = {1.0, 5.0};
     const auto verdicts = rivals.verdicts();
     EXPECT_EQ(verdicts[0].kind, LinkKind::Adjacent);
     EXPECT_EQ(verdicts[1].reason, LinkReason::Separation);

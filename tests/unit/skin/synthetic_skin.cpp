@@ -110,7 +110,7 @@ Skin retold(Random& random, const Skin& skin) {
 CableEvidence noEvidence(const SkinGraph& graph) {
     CableEvidence evidence;
     evidence.R_a_b.resize(graph.links().size());
-    evidence.separation_pitches.resize(graph.links().size());
+    evidence.separation.resize(graph.links().size());
     return evidence;
 }
 

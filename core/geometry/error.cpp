@@ -15,7 +15,7 @@ std::string_view name(ErrorCode code) {
         case ErrorCode::TooFewPoints:
             return "too few points";
         case ErrorCode::DegeneratePoints:
-            return "points lie on a line";
+            return "the measurements leave a pose undetermined, as points on a line do";
         case ErrorCode::NoConsensus:
             return "no pose explains enough of the points";
         case ErrorCode::SizeMismatch:

@@ -11,7 +11,7 @@ enum class ErrorCode {
     TooFewPoses,       ///< fewer gravity poses than the estimate needs
     ParallelGravity,   ///< the poses differ only by a turn about gravity
     TooFewPoints,      ///< fewer LEDs than a pose needs
-    DegeneratePoints,  ///< points on a line, or all at one place
+    DegeneratePoints,  ///< what was measured leaves a pose free: points on a line or at one place, or nothing at all
     NoConsensus,       ///< no pose explains enough of the points
     SizeMismatch,      ///< paired inputs of different length
     NotFinite,         ///< NaN or infinity among the measurements

@@ -22,6 +22,13 @@ TEST(Error, UnknownCodeIsABrokenContract) {
     EXPECT_THROW((void)name(static_cast<ErrorCode>(1000)), std::logic_error);
 }
 
+TEST(Error, DegeneratePointsSaysWhatIsTrueOfEveryUse) {
+    // It stands for LEDs on a line, but also for a module of which nothing was measured at all.
+    const std::string text = CalibrationError{ErrorCode::DegeneratePoints}.message();
+    EXPECT_NE(text.find("undetermined"), std::string::npos) << text;
+    EXPECT_EQ(text.find("lie on a line"), std::string::npos) << text;
+}
+
 TEST(Error, MessageWithoutNumbersIsTheName) {
     EXPECT_EQ((CalibrationError{ErrorCode::Cancelled}.message()), "cancelled");
 }

@@ -37,6 +37,7 @@ SkinGraph buildSkinGraph(const Skin& skin) {
     const auto index = skin.indexById();
     std::vector<GraphLink> links;
     std::map<std::pair<Port, Port>, std::size_t> known;
+    std::map<std::size_t, std::set<LinkKind>> words;
     for (std::size_t r = 0; r < skin.links.size(); ++r) {
         const Link& link = skin.links[r];
         const Port a = portOf(skin, index, link.a, link.a_port);
@@ -46,9 +47,13 @@ SkinGraph buildSkinGraph(const Skin& skin) {
             links.push_back({a.first, b.first, a.second, b.second, std::nullopt, {}, {}});
         GraphLink& merged = links[entry->second];
         merged.reported.push_back(r);
-        // The last word stands, should the two reports carry different ones.
         if (link.decided)
-            merged.decided = link.decided;
+            words[entry->second].insert(*link.decided);
+    }
+    for (const auto& [l, said] : words) {
+        // Contradicting words are no word: none of them is the later one, whatever the order of the links.
+        if (said.size() == 1)
+            links[l].decided = *said.begin();
     }
 
     std::map<Port, int> claims;

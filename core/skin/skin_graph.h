@@ -21,7 +21,7 @@ struct GraphLink {
     std::size_t b = 0;
     int a_port = 0;
     int b_port = 0;
-    std::optional<LinkKind> decided;    ///< the operator's word
+    std::optional<LinkKind> decided;    ///< the operator's word; none where two reports carry contradicting ones
     std::vector<std::size_t> reported;  ///< positions in Skin::links: one, or two where both ends reported it
     std::vector<LinkIssue> issues;
 
@@ -52,7 +52,9 @@ class SkinGraph {
 };
 
 /// Merges what both ends reported, in the order of first report, and notes what is odd. A link reported by one end
-/// only is as good as any: the other end's report may have been lost. Links to modules that the skin does not have
+/// only is as good as any: the other end's report may have been lost. The operator's word on any report counts for the
+/// link; where reports of one link carry both words, they cancel out, as if nothing had been said, so that the order
+/// in which a file lists them decides nothing. Links to modules that the skin does not have
 /// or to ports that a template lacks are a broken contract (readers refuse them) and throw std::logic_error.
 [[nodiscard]] SkinGraph buildSkinGraph(const Skin& skin);
 

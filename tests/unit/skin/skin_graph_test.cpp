@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/unit/skin/grids.h"
 
 namespace skincal {
@@ -45,14 +47,29 @@ TEST(SkinGraph, OneLinkReportedFromOneSideOrBothIsOneLink) {
     }
 }
 
-TEST(SkinGraph, EachReportMayCarryTheOperatorsWordAndTheLastStands) {
+TEST(SkinGraph, EachReportMayCarryTheOperatorsWord) {
     Skin skin = test::looseModules(paperHexagon(), 2);
     skin.links = {link(1, 0, 2, 3, LinkKind::Cable), link(2, 3, 1, 0)};
     EXPECT_EQ(buildSkinGraph(skin).links()[0].decided, LinkKind::Cable);
     skin.links = {link(1, 0, 2, 3), link(2, 3, 1, 0, LinkKind::Adjacent)};
     EXPECT_EQ(buildSkinGraph(skin).links()[0].decided, LinkKind::Adjacent);
-    skin.links[0].decided = LinkKind::Cable;
+    skin.links[0].decided = LinkKind::Adjacent;
     EXPECT_EQ(buildSkinGraph(skin).links()[0].decided, LinkKind::Adjacent);
+}
+
+TEST(SkinGraph, ContradictingWordsCancelOutInWhateverOrder) {
+    Skin skin = test::looseModules(paperHexagon(), 3);
+    std::vector<std::optional<LinkKind>> words{LinkKind::Adjacent, LinkKind::Cable, LinkKind::Cable, std::nullopt};
+    std::sort(words.begin(), words.end());
+    do {
+        skin.links = {link(2, 0, 3, 3, LinkKind::Cable)};
+        for (std::size_t i = 0; i < words.size(); ++i)
+            skin.links.push_back(i % 2 == 0 ? link(1, 0, 2, 3, words[i]) : link(2, 3, 1, 0, words[i]));
+        const auto links = buildSkinGraph(skin).links();
+        ASSERT_EQ(links.size(), 2U);
+        EXPECT_EQ(links[0].decided, LinkKind::Cable) << "another link's word is none of their business";
+        EXPECT_EQ(links[1].decided, std::nullopt);
+    } while (std::next_permutation(words.begin(), words.end()));
 }
 
 TEST(SkinGraph, NotesTwoClaimsToOnePort) {

@@ -8,7 +8,8 @@
 #include <tl/expected.hpp>
 
 #include "core/geometry/run_context.h"
-#include "core/vision/lit_words.h"
+#include "core/vision/frame.h"
+#include "core/vision/frame_pixels.h"
 
 namespace skincal {
 

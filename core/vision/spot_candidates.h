@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/vision/frame_pixels.h"
 #include "core/vision/image_noise.h"
-#include "core/vision/lit_words.h"
 
 namespace skincal {
 

@@ -7,6 +7,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/geometry/statistics.h"
+
 namespace skincal {
 namespace {
 
@@ -32,9 +34,7 @@ double medianValue(const std::vector<SpotPixel>& pixels) {
     values.reserve(pixels.size());
     for (const SpotPixel& pixel : pixels)
         values.push_back(pixel.value);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return median(std::move(values));
 }
 
 // Centroid of what rises above half the peak: inside the basin of the fit even on a clipped plateau.

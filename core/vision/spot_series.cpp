@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+
+#include "core/geometry/statistics.h"
 
 namespace skincal {
 namespace {
@@ -29,9 +32,15 @@ double edgeLevel(const FramePixels& frame, const SpotCandidate& spot, int radius
     }
     if (edge.empty())
         return 0;
-    const auto middle = edge.begin() + static_cast<std::ptrdiff_t>(edge.size() / 2);
-    std::nth_element(edge.begin(), middle, edge.end());
-    return *middle;
+    return median(std::move(edge));
+}
+
+Eigen::RowVectorXd weightsOf(const Codebook& codebook, std::span<const std::size_t> words, std::size_t index,
+                             std::span<const std::uint8_t> used) {
+    const Eigen::MatrixXd weights = amplitudeWeights(codebook, words, used);
+    if (static_cast<Eigen::Index>(index) >= weights.rows())
+        throw std::logic_error("AmplitudeMap: words that can't be separated");
+    return weights.row(static_cast<Eigen::Index>(index));
 }
 
 }  // namespace
@@ -69,7 +78,7 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
                            std::span<const std::size_t> words, std::size_t index, std::span<const std::uint8_t> used)
     : spot_(spot),
       radius_(radius),
-      weights_(amplitudeWeights(codebook, words, used).row(static_cast<Eigen::Index>(index))),
+      weights_(weightsOf(codebook, words, index, used)),
       space_(explainedSpace(codebook, words, used)),
       lit_(codebook.planes(), 0),
       used_(used.begin(), used.end()),

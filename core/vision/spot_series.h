@@ -4,10 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "core/vision/codebook.h"
+#include "core/vision/frame_pixels.h"
 #include "core/vision/image_noise.h"
 #include "core/vision/spot_candidates.h"
 #include "core/vision/spot_fit.h"
-#include "core/vision/word_match.h"
 
 namespace skincal {
 
@@ -28,6 +29,7 @@ class AmplitudeMap {
   public:
     /// @param words  all words in the series of this spot, @param index the one whose light is wanted
     /// @param used   planes that were not disturbed
+    /// Throws std::logic_error where the words can't be separated over those planes; those of a Matched series can.
     /// A clipped pixel bounds the light from below where the word is the only one; with two nothing is known of it.
     AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size picture, const Codebook& codebook,
                  std::span<const std::size_t> words, std::size_t index, std::span<const std::uint8_t> used);

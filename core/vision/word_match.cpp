@@ -2,10 +2,11 @@
 
 #include <Eigen/Dense>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <tuple>
+
+#include "core/geometry/statistics.h"
 
 namespace skincal {
 namespace {
@@ -19,40 +20,8 @@ struct Explanation {
     double cost = std::numeric_limits<double>::infinity();
     std::size_t disturbed = 0;
     double reducedCost = 0;
-    bool significant = false;  ///< else it may compete, but not win
+    bool significant = false;  ///< and settled; else it may compete, but not win
 };
-
-Eigen::MatrixXd design(const Codebook& codebook, std::span<const std::size_t> words) {
-    const Eigen::Index drifts = codebook.drift.cols();
-    Eigen::MatrixXd X(codebook.drift.rows(), drifts + static_cast<Eigen::Index>(words.size()));
-    X.leftCols(drifts) = codebook.drift;
-    X.rightCols(static_cast<Eigen::Index>(words.size())).setZero();
-    for (std::size_t j = 0; j < words.size(); ++j) {
-        for (const std::size_t plane : codebook.lit[words[j]])
-            X(static_cast<Eigen::Index>(plane), drifts + static_cast<Eigen::Index>(j)) = 1;
-    }
-    return X;
-}
-
-// Inverse of the normal matrix over the used planes, or nothing where they can't tell the columns apart.
-std::optional<Eigen::MatrixXd> inverseNormal(const Eigen::MatrixXd& X, std::span<const std::uint8_t> used) {
-    Eigen::MatrixXd N = Eigen::MatrixXd::Zero(X.cols(), X.cols());
-    for (Eigen::Index k = 0; k < X.rows(); ++k) {
-        if (used[static_cast<std::size_t>(k)] != 0)
-            N.selfadjointView<Eigen::Lower>().rankUpdate(X.row(k).transpose());
-    }
-    const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor(N);
-    // The drift columns are normalised, so small numbers here mean dependence, not scale.
-    if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() < 1e-3)
-        return std::nullopt;
-    return factor.solve(Eigen::MatrixXd::Identity(N.rows(), N.cols()));
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 // Residuals of a single word from medians: planes that a hand or a flash spoilt don't move it.
 Eigen::VectorXd medianResiduals(const Codebook& codebook, std::size_t word, const Eigen::VectorXd& y) {
@@ -95,7 +64,7 @@ class Matcher {
 
     // The best of two starts: plain least squares, and (for single words) medians.
     [[nodiscard]] Explanation explain(const Words& words) const {
-        const Eigen::MatrixXd X = design(codebook_, words);
+        const Eigen::MatrixXd X = designMatrix(codebook_, words);
         std::vector<std::uint8_t> all(codebook_.planes(), 1);
         Explanation best = refine(X, words, all);
         if (words.size() == 1 && best.disturbed + best.reducedCost > 1) {
@@ -108,7 +77,7 @@ class Matcher {
 
     // No LED at all, only drift and disturbances.
     [[nodiscard]] double costOfDarkness() const {
-        const Eigen::MatrixXd X = design(codebook_, {});
+        const Eigen::MatrixXd X = designMatrix(codebook_, {});
         const std::vector<std::uint8_t> all(codebook_.planes(), 1);
         return std::min(refine(X, {}, all).cost, refine(X, {}, keep(y_.array() - medianOfAll())).cost);
     }
@@ -133,8 +102,8 @@ class Matcher {
         Explanation e;
         e.words = words;
         const auto count = static_cast<Eigen::Index>(words.size());
-        for (int iteration = 0; iteration < 8; ++iteration) {
-            const auto inverse = inverseNormal(X, used);
+        for (int iteration = 1; iteration <= options_.maxIterations; ++iteration) {
+            const auto inverse = inverseNormalMatrix(X, used);
             if (!inverse)
                 return e;
             Eigen::VectorXd moment = Eigen::VectorXd::Zero(X.cols());
@@ -145,15 +114,17 @@ class Matcher {
             const Eigen::VectorXd solution = *inverse * moment;
             const Eigen::VectorXd residuals = y_ - X * solution;
             std::vector<std::uint8_t> next = keep(residuals);
-            const bool settled = next == used || iteration == 7;
+            const bool settled = next == used;
             used = std::move(next);
-            if (!settled)
+            if (!settled && iteration < options_.maxIterations)
                 continue;
             e.amplitudes = solution.tail(count);
             if ((e.amplitudes.array() <= 0).any())
                 return e;
             const Eigen::VectorXd sigmas = cameraSigma_ * inverse->diagonal().tail(count).cwiseSqrt();
-            e.significant = (e.amplitudes.array() > options_.minSignificance * sigmas.array()).all();
+            // Planes that come and go leave no fit: what was solved and what would be kept belong to different planes,
+            // over which the words need not even be separable. Its cost is a cost all the same, which others must beat.
+            e.significant = settled && (e.amplitudes.array() > options_.minSignificance * sigmas.array()).all();
             finish(e, residuals, used, X.cols());
             break;
         }
@@ -209,40 +180,7 @@ std::vector<std::pair<double, std::size_t>> rank(const Codebook& codebook, const
 bool WordMatchOptions::validate() const {
     return outlier > 0 && minSignificance > 0 && minMargin > 0 && maxReducedCost > 0 && maxDisturbed >= 0 &&
            maxDisturbed < 0.5 && brightnessSpread >= 0 && brightnessSpread < 1 && colourSpread >= 0 &&
-           colourSpread < 1 && shortlist >= 2;
-}
-
-Codebook makeCodebook(const LitWords& words) {
-    Codebook book;
-    book.coloured = words.coloured;
-    book.lit = words.lit;
-    const auto planes = static_cast<Eigen::Index>(words.planes.size());
-    const Eigen::Index channels = words.coloured ? 3 : 1;
-    const std::size_t frames = words.planes.size() / words.planesPerFrame();
-    const bool slope = frames >= 8;
-    book.drift = Eigen::MatrixXd::Zero(planes, channels + (slope ? 1 : 0));
-    for (Eigen::Index k = 0; k < planes; ++k) {
-        const Plane& plane = words.planes[static_cast<std::size_t>(k)];
-        const auto channel = static_cast<std::size_t>(std::max(plane.channel, 0));
-        book.channelOf.push_back(channel);
-        book.drift(k, static_cast<Eigen::Index>(channel)) = 1;
-        if (slope)
-            book.drift(k, channels) = static_cast<double>(plane.frame) - 0.5 * static_cast<double>(frames - 1);
-    }
-    // Centred time is orthogonal to the constants already.
-    for (Eigen::Index j = 0; j < book.drift.cols(); ++j) {
-        if (const double norm = book.drift.col(j).norm(); norm > 0)
-            book.drift.col(j) /= norm;
-    }
-    std::map<std::vector<std::size_t>, std::size_t> first;
-    for (std::size_t u = 0; u < book.lit.size(); ++u) {
-        Eigen::VectorXd projection = Eigen::VectorXd::Zero(book.drift.cols());
-        for (const std::size_t plane : book.lit[u])
-            projection += book.drift.row(static_cast<Eigen::Index>(plane)).transpose();
-        book.energy.push_back(static_cast<double>(book.lit[u].size()) - projection.squaredNorm());
-        book.representative.push_back(first.emplace(book.lit[u], u).first->second);
-    }
-    return book;
+           colourSpread < 1 && shortlist >= 2 && maxIterations >= 1;
 }
 
 SeriesMatch matchSeries(const Codebook& codebook, std::span<const double> series, double sigma,
@@ -319,36 +257,13 @@ SeriesMatch matchSeries(const Codebook& codebook, std::span<const double> series
                 match.runnerUp = word;
         }
     }
-    if (!matcher.believable(*best))
+    // Asked once more with the brightest word first, as callers will: near a dependence the order can decide.
+    const bool separable = amplitudeWeights(codebook, match.words, match.used).size() > 0;
+    if (!separable || !matcher.believable(*best))
         match.verdict = SeriesVerdict::Unlike;
     else
         match.verdict = match.margin >= options.minMargin ? SeriesVerdict::Matched : SeriesVerdict::Ambiguous;
     return match;
-}
-
-Eigen::MatrixXd amplitudeWeights(const Codebook& codebook, std::span<const std::size_t> words,
-                                 std::span<const std::uint8_t> used) {
-    const Eigen::MatrixXd X = design(codebook, words);
-    const auto inverse = inverseNormal(X, used);
-    if (!inverse)
-        return {};
-    Eigen::MatrixXd weights = inverse->bottomRows(static_cast<Eigen::Index>(words.size())) * X.transpose();
-    for (Eigen::Index k = 0; k < weights.cols(); ++k) {
-        if (used[static_cast<std::size_t>(k)] == 0)
-            weights.col(k).setZero();
-    }
-    return weights;
-}
-
-Eigen::MatrixXd explainedSpace(const Codebook& codebook, std::span<const std::size_t> words,
-                               std::span<const std::uint8_t> used) {
-    Eigen::MatrixXd X = design(codebook, words);
-    for (Eigen::Index k = 0; k < X.rows(); ++k) {
-        if (used[static_cast<std::size_t>(k)] == 0)
-            X.row(k).setZero();
-    }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> factor(X);
-    return factor.householderQ() * Eigen::MatrixXd::Identity(X.rows(), X.cols());
 }
 
 }  // namespace skincal

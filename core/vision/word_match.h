@@ -1,13 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "core/vision/lit_words.h"
+#include "core/vision/codebook.h"
 
 namespace skincal {
 
@@ -20,24 +18,10 @@ struct WordMatchOptions {
     double brightnessSpread = 0.05;  ///< how evenly one LED shines from plane to plane, relative
     double colourSpread = 0.1;       ///< the same between colours, where LEDs are lit in colours
     int shortlist = 8;               ///< words examined robustly per series
+    int maxIterations = 50;          ///< of fitting and dropping disturbed planes; what has not settled then is no fit
 
     [[nodiscard]] bool validate() const;
 };
-
-/// The words of all modules, made ready for matching: projected off a constant per channel and a straight drift.
-struct Codebook {
-    Eigen::MatrixXd drift;                      ///< planes x (channels + 1), orthonormal; no slope below 8 planes
-    std::vector<std::size_t> channelOf;         ///< per plane, 0 … channels-1
-    std::vector<std::vector<std::size_t>> lit;  ///< per module, as in LitWords
-    std::vector<double> energy;                 ///< per module, squared norm of its word off the drift
-    std::vector<std::size_t> representative;    ///< per module, the first module with the same word
-    bool coloured = false;
-
-    /// False where the word is constant (never or always lit) or looks like drift: nothing can find such a module.
-    [[nodiscard]] bool blinks(std::size_t module) const { return energy[module] > 0.2; }
-    [[nodiscard]] std::size_t planes() const { return channelOf.size(); }
-};
-[[nodiscard]] Codebook makeCodebook(const LitWords& words);
 
 enum class SeriesVerdict {
     Matched,    ///< one word, or the sum of two, explains the series and nothing else does
@@ -61,20 +45,13 @@ struct SeriesMatch {
 /// the decision. The capped likelihoods of the best and the second-best explanation (no light at all included) must
 /// differ by `minMargin`. One-at-a-time words have a single lit plane and hence no redundancy: there a flash exactly
 /// in that frame looks like the LED; the shape of the spot has to decide.
+/// The words of a Matched series can be separated over its `used` planes (amplitudeWeights is not empty) and its
+/// amplitudes are the least-squares ones there: an explanation whose planes keep coming and going counts as a rival,
+/// but never as the answer.
 /// @param series  one value per plane of the codebook, grey levels
 /// @param sigma   standard deviation of a value from camera noise alone, > 0
 /// Throws std::logic_error on a size mismatch or bad options.
 [[nodiscard]] SeriesMatch matchSeries(const Codebook& codebook, std::span<const double> series, double sigma,
                                       const WordMatchOptions& options = {});
-
-/// Weights that turn pixel values over the planes into the amplitude of each word in `words` (least squares on drift
-/// and words over the planes in `used`): one row per word, one column per plane. Empty when they can't be separated.
-[[nodiscard]] Eigen::MatrixXd amplitudeWeights(const Codebook& codebook, std::span<const std::size_t> words,
-                                               std::span<const std::uint8_t> used);
-
-/// Orthonormal basis of what drift and `words` can explain over the planes in `used`: planes x unknowns, zero rows for
-/// planes not used. What it leaves of a pixel's values is light that follows none of them.
-[[nodiscard]] Eigen::MatrixXd explainedSpace(const Codebook& codebook, std::span<const std::size_t> words,
-                                             std::span<const std::uint8_t> used);
 
 }  // namespace skincal

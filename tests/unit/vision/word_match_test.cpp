@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/vision/codebook.h"
+#include "core/vision/frame_pixels.h"
+#include "core/vision/spot_series.h"
 #include "tests/unit/vision/scan_painter.h"
 
 namespace skincal::testing {
@@ -180,6 +183,75 @@ TEST(WordMatching, WeightsOfTheSameWordTwiceDoNotExist) {
     EXPECT_EQ(amplitudeWeights(scan.book, std::vector<std::size_t>{2, 2}, used).size(), 0);
 }
 
+/// A long series of one blinking LED on light that changes faster and faster: the planes at its end are dropped a few
+/// at a time.
+struct BentSeries {
+    Codebook book;
+    std::vector<double> y;
+
+    explicit BentSeries(std::uint64_t seed) {
+        Random random(seed, "bent series");
+        const std::vector<ModuleId> ids{ModuleId(1), ModuleId(2)};
+        std::vector<FrameInfo> frames(600 + random.index(200));
+        for (FrameInfo& frame : frames) {
+            for (const ModuleId id : ids) {
+                if (random.uniform() < 0.5)
+                    frame.lit.push_back({id});
+            }
+        }
+        book = makeCodebook(*litWords(ids, frames));
+        const double bend = random.uniform(25, 45);
+        const int power = 3 + static_cast<int>(random.index(3));
+        for (std::size_t k = 0; k < frames.size(); ++k)
+            y.push_back(bend * std::pow(static_cast<double>(k) / static_cast<double>(frames.size()), power) +
+                        random.normal());
+        const double amplitude = random.uniform(10, 40);
+        for (const std::size_t plane : book.lit[0])
+            y[plane] += amplitude;
+    }
+};
+
+TEST(WordMatching, WhatMatchesIsTheLeastSquaresFitToThePlanesItKeeps) {
+    int matched = 0;
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        const BentSeries bent(seed);
+        const SeriesMatch match = matchSeries(bent.book, bent.y, 1);
+        if (match.verdict != SeriesVerdict::Matched)
+            continue;
+        ++matched;
+        const Eigen::MatrixXd weights = amplitudeWeights(bent.book, match.words, match.used);
+        ASSERT_EQ(weights.rows(), static_cast<Eigen::Index>(match.words.size()));
+        const Eigen::VectorXd light =
+            weights * Eigen::Map<const Eigen::VectorXd>(bent.y.data(), static_cast<Eigen::Index>(bent.y.size()));
+        for (std::size_t j = 0; j < match.words.size(); ++j)
+            EXPECT_NEAR(light[static_cast<Eigen::Index>(j)], match.amplitudes[j], 1e-6) << "seed " << seed;
+    }
+    EXPECT_GE(matched, 200);
+}
+
+TEST(WordMatching, AFitThatHasNotSettledIsNone) {
+    WordMatchOptions hasty;
+    hasty.maxIterations = 1;
+    int refused = 0;
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        const BentSeries bent(seed);
+        const SeriesMatch match = matchSeries(bent.book, bent.y, 1);
+        const bool dropped = std::find(match.used.begin(), match.used.end(), 0) != match.used.end();
+        if (match.verdict != SeriesVerdict::Matched || !dropped)
+            continue;
+        EXPECT_NE(matchSeries(bent.book, bent.y, 1, hasty).verdict, SeriesVerdict::Matched) << "seed " << seed;
+        ++refused;
+    }
+    EXPECT_GE(refused, 50);
+}
+
+TEST(SpotSeries, WordsThatCannotBeSeparatedThrow) {
+    const Scan scan = makeScan(7, 8, false);
+    const std::vector<std::uint8_t> used(scan.frames.size(), 1);
+    const std::vector<std::size_t> words{2, 2};
+    EXPECT_THROW(AmplitudeMap({20, 20, 50}, 5, {40, 40}, scan.book, words, 0, used), std::logic_error);
+}
+
 TEST(WordMatching, MisuseThrows) {
     const Scan scan = makeScan(8, 8, false);
     const std::vector<double> y(scan.frames.size(), 0.0);
@@ -187,6 +259,9 @@ TEST(WordMatching, MisuseThrows) {
     EXPECT_THROW((void)matchSeries(scan.book, y, 0), std::logic_error);
     WordMatchOptions options;
     options.shortlist = 1;
+    EXPECT_THROW((void)matchSeries(scan.book, y, 1, options), std::logic_error);
+    options = {};
+    options.maxIterations = 0;
     EXPECT_THROW((void)matchSeries(scan.book, y, 1, options), std::logic_error);
 }
 

@@ -1,0 +1,34 @@
+#include "core/vision/frame_pixels.h"
+
+#include <fmt/format.h>
+
+#include <opencv2/imgproc.hpp>
+
+namespace skincal {
+
+tl::expected<FramePixels, std::string> FramePixels::make(cv::Mat picture, const std::string& file, cv::Size expected,
+                                                         bool coloured) {
+    if (picture.empty())
+        return tl::unexpected(file + ": the picture is empty");
+    if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3))
+        return tl::unexpected(file + ": expected an 8-bit grey or colour picture");
+    if (expected.area() > 0 && picture.size() != expected)
+        return tl::unexpected(fmt::format("{}: expected {} x {} pixels as in the view's first frame, found {} x {}",
+                                          file, expected.width, expected.height, picture.cols, picture.rows));
+    if (coloured && picture.channels() != 3)
+        return tl::unexpected(file + ": a grey picture of LEDs that were lit in colours");
+    return FramePixels(std::move(picture));
+}
+
+cv::Mat FramePixels::plane(int channel) const {
+    if (picture_.channels() == 1)
+        return picture_;
+    cv::Mat plane;
+    if (channel >= 0)
+        cv::extractChannel(picture_, plane, channel);
+    else
+        cv::transform(picture_, plane, cv::Matx13f(1.0F / 3, 1.0F / 3, 1.0F / 3));
+    return plane;
+}
+
+}  // namespace skincal

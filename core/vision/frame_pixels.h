@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace skincal {
+
+/// A loaded frame, checked, with access to the pixels of its planes.
+class FramePixels {
+  public:
+    /// Fails when the picture is empty, not 8-bit with 1 or 3 channels, of another size than `expected` (if that is not
+    /// empty), or grey where colours were lit.
+    [[nodiscard]] static tl::expected<FramePixels, std::string> make(cv::Mat picture, const std::string& file,
+                                                                     cv::Size expected, bool coloured);
+
+    [[nodiscard]] cv::Size size() const { return picture_.size(); }
+    [[nodiscard]] const cv::Mat& picture() const { return picture_; }
+    /// The whole plane as 8-bit grey.
+    [[nodiscard]] cv::Mat plane(int channel) const;
+    [[nodiscard]] double value(int x, int y, int channel) const {
+        const std::uint8_t* pixel = picture_.ptr<std::uint8_t>(y) + x * picture_.channels();
+        if (picture_.channels() == 1)
+            return pixel[0];
+        return channel >= 0 ? pixel[channel] : (pixel[0] + pixel[1] + pixel[2]) / 3.0;
+    }
+    /// True where any channel that the plane is made of sits at the end of its range.
+    [[nodiscard]] bool saturated(int x, int y, int channel) const {
+        constexpr int kTop = 254;
+        const std::uint8_t* pixel = picture_.ptr<std::uint8_t>(y) + x * picture_.channels();
+        if (picture_.channels() == 1)
+            return pixel[0] >= kTop;
+        return channel >= 0 ? pixel[channel] >= kTop : std::max(pixel[0], std::max(pixel[1], pixel[2])) >= kTop;
+    }
+
+  private:
+    explicit FramePixels(cv::Mat picture) : picture_(std::move(picture)) {}
+    cv::Mat picture_;
+};
+
+}  // namespace skincal

@@ -13,28 +13,16 @@ namespace {
 constexpr std::size_t kNoiseTable = std::size_t{1} << 16U;
 constexpr double kReferenceDistance = 0.6;  // m, at which RenderOptions::ledPeak holds
 
-/// Clouds and boxes: gradients and edges as a lab has them.
-cv::Mat paintBackground(const World& world, std::size_t view) {
-    const CameraModel& camera = world.scenario.camera;
-    const RenderOptions& options = world.scenario.pictures;
-    Random random(world.seed + 7919 * view, "background");
-    cv::Mat coarse(9, 16, CV_32F);
-    for (int y = 0; y < coarse.rows; ++y) {
-        for (int x = 0; x < coarse.cols; ++x)
-            coarse.at<float>(y, x) = static_cast<float>(options.background + 0.4 * options.texture * random.normal());
+/// Share of a lamp's light that reaches each part of the picture: most of it about the lamp, some of it everywhere.
+cv::Mat lampLight(const CameraModel& camera) {
+    cv::Mat light(camera.height, camera.width, CV_32F);
+    for (int y = 0; y < light.rows; ++y) {
+        for (int x = 0; x < light.cols; ++x) {
+            const double r = std::hypot(x - 0.25 * camera.width, y - 0.2 * camera.height) / (0.3 * camera.width);
+            light.at<float>(y, x) = static_cast<float>(0.3 + 0.7 * std::exp(-0.5 * r * r));
+        }
     }
-    cv::Mat picture;
-    cv::resize(coarse, picture, cv::Size(camera.width, camera.height), 0, 0, cv::INTER_CUBIC);
-    for (int box = 0; box < 25; ++box) {
-        const cv::Rect area(static_cast<int>(random.uniform(-0.1, 0.95) * camera.width),
-                            static_cast<int>(random.uniform(-0.1, 0.95) * camera.height),
-                            static_cast<int>(random.uniform(0.02, 0.2) * camera.width),
-                            static_cast<int>(random.uniform(0.02, 0.25) * camera.height));
-        const double level = options.background + options.texture * random.uniform(-1, 1);
-        cv::rectangle(picture, area, cv::Scalar(level), cv::FILLED);
-    }
-    cv::GaussianBlur(picture, picture, cv::Size(0, 0), options.blur_px);
-    return cv::max(picture, 3.0);
+    return light;
 }
 
 double flickerAt(std::size_t frame) {
@@ -52,28 +40,27 @@ double ledLobe(double angle, double fullAngle) {
 }
 
 FrameRenderer::FrameRenderer(const World& world, std::size_t view, std::size_t frames)
-    : world_(world),
-      view_(view),
-      frames_(frames),
-      background_(paintBackground(world, view)),
-      noise_(kNoiseTable),
-      index_(world.skin.indexById()) {
+    : world_(world), view_(view), frames_(frames), noise_(kNoiseTable), index_(world.skin.indexById()) {
     Random random(world.seed, "noise table");
     for (float& n : noise_)
         n = static_cast<float>(random.normal());
-    spots_ = spotsAt(world.T_r_v[view]);
-    if (world.scenario.disturbances.bump_px > 0) {
-        const double angle = world.scenario.disturbances.bump_px / world.scenario.camera.fx;
-        Isometry3d T = world.T_r_v[view];
-        T.linear() = T.linear() * so3Exp(angle * Vector3d(0.6, -0.8, 0.1));
-        bumpedSpots_ = spotsAt(T);
+    const DisturbanceOptions& disturbances = world.scenario.disturbances;
+    const CameraModel& camera = world.scenario.camera;
+    const Isometry3d& T_r_v = world.T_r_v[view];
+    // The same whether the camera will be knocked or not, so that the first half of such a view is as it was.
+    const int margin = std::max(32, 4 + static_cast<int>(std::ceil(2 * disturbances.bump_px)));
+    const cv::Mat scene = paintScene(world, view, margin);
+    background_ = scene(cv::Rect(margin, margin, camera.width, camera.height)).clone();
+    spots_ = spotsAt(T_r_v);
+    if (disturbances.bump_px > 0 && view % 2 == 1) {
+        const Matrix3d R_v_b = so3Exp(disturbances.bump_px / camera.fx * Vector3d(0.6, -0.8, 0.1));
+        bumpedBackground_ = turnScene(scene, camera, R_v_b);
+        bumpedSpots_ = spotsAt(makeIsometry(T_r_v.linear() * R_v_b, T_r_v.translation()));
     }
-    const Eigen::Vector4d hidden = occluderOf(world, view);
-    if (hidden[2] > 0)
-        cv::rectangle(background_,
-                      cv::Rect(static_cast<int>(hidden[0]), static_cast<int>(hidden[1]), static_cast<int>(hidden[2]),
-                               static_cast<int>(hidden[3])),
-                      cv::Scalar(180), cv::FILLED);
+    if (disturbances.person)
+        person_ = paintPerson(camera, world.scenario.pictures);
+    if (disturbances.flicker > 0)
+        lamp_ = lampLight(camera);
 }
 
 std::vector<FrameRenderer::Spot> FrameRenderer::spotsAt(const Isometry3d& T_r_v) const {
@@ -99,7 +86,7 @@ std::vector<FrameRenderer::Spot> FrameRenderer::spotsAt(const Isometry3d& T_r_v)
 }
 
 bool FrameRenderer::bumped(std::size_t frame) const {
-    return !bumpedSpots_.empty() && view_ % 2 == 1 && 2 * frame >= frames_;
+    return !bumpedSpots_.empty() && 2 * frame >= frames_;
 }
 
 void FrameRenderer::drawSpot(cv::Mat& light, const Spot& spot) const {
@@ -131,19 +118,20 @@ void FrameRenderer::drawSpot(cv::Mat& light, const Spot& spot) const {
     }
 }
 
-void FrameRenderer::disturb(cv::Mat& light, std::size_t frame) const {
-    const DisturbanceOptions& options = world_.scenario.disturbances;
-    if (options.flicker > 0) {
-        // Most of it where the lamp shines, some of it everywhere.
-        const double swing = options.flicker * flickerAt(frame);
-        light += cv::Scalar(0.3 * swing);
-        light(cv::Rect(0, 0, light.cols / 2, light.rows / 2)) += cv::Scalar(0.7 * swing);
-    }
-    if (options.person) {
-        const double way = static_cast<double>(frame) / static_cast<double>(std::max<std::size_t>(1, frames_ - 1));
-        const cv::Point middle(static_cast<int>((1.2 * way - 0.1) * light.cols), static_cast<int>(0.62 * light.rows));
-        cv::ellipse(light, middle, cv::Size(light.cols / 22, light.rows / 3), 0, 0, 360, cv::Scalar(115), cv::FILLED);
-        cv::circle(light, middle - cv::Point(0, light.rows * 2 / 5), light.rows / 12, cv::Scalar(150), cv::FILLED);
+void FrameRenderer::passBy(cv::Mat& light, std::size_t frame) const {
+    const double way = static_cast<double>(frame) / static_cast<double>(std::max<std::size_t>(1, frames_ - 1));
+    const int left = static_cast<int>((1.2 * way - 0.1) * light.cols) - person_.level.cols / 2;
+    const cv::Rect place(left, 0, person_.level.cols, person_.level.rows);
+    const cv::Rect inside = place & cv::Rect(0, 0, light.cols, light.rows);
+    if (inside.empty())
+        return;
+    const cv::Rect part(inside.x - left, 0, inside.width, inside.height);
+    for (int y = 0; y < inside.height; ++y) {
+        const auto* level = person_.level.ptr<float>(y) + part.x;
+        const auto* cover = person_.cover.ptr<float>(y) + part.x;
+        auto* row = light.ptr<float>(y) + inside.x;
+        for (int x = 0; x < inside.width; ++x)
+            row[x] += cover[x] * (level[x] - row[x]);
     }
 }
 
@@ -178,8 +166,9 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
     const std::uint64_t frameSeed = (world_.seed * 1000003 + view_) * 1000003 + frame;
     std::vector<cv::Mat> channels;
     for (int channel = 0; channel < (colour ? 3 : 1); ++channel) {
-        cv::Mat light = background_.clone();
-        disturb(light, frame);
+        cv::Mat light = (bumped(frame) ? bumpedBackground_ : background_).clone();
+        if (!lamp_.empty())
+            cv::scaleAdd(lamp_, world_.scenario.disturbances.flicker * flickerAt(frame), light, light);
         for (const LitModule& l : lit) {
             const auto found = index_.find(l.module);
             if (found == index_.end() || spots[found->second].peak <= 0)
@@ -192,14 +181,17 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
             }
             drawSpot(light, spot);
             if (mirror > 0) {
-                // A mirror below the body.
+                const double edge = mirrorEdge(world_.scenario.camera);
                 Spot image = spot;
-                image.pixel.y() = 1.55 * world_.scenario.camera.height - image.pixel.y();
+                image.pixel.y() = 2 * edge - image.pixel.y();
                 image.peak *= mirror;
-                if (world_.scenario.camera.contains(image.pixel))
+                if (image.pixel.y() > edge && world_.scenario.camera.contains(image.pixel))
                     drawSpot(light, image);
             }
         }
+        // Who stands in front hides LEDs as he hides everything else.
+        if (!person_.level.empty())
+            passBy(light, frame);
         channels.push_back(expose(light, frameSeed * 3 + static_cast<std::uint64_t>(channel)));
     }
     if (!colour)

@@ -3,12 +3,13 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "core/simulation/scene.h"
 #include "core/simulation/world.h"
 
 namespace skincal {
 
-/// The simulated webcam at one view: LEDs with their lobe, through lens, blur, noise and clipping, before a textured
-/// background, with the scenario's disturbances. The picture of a frame depends on world, view, lit set and frame
+/// The simulated webcam at one view: LEDs with their lobe, through lens, blur, noise and clipping, on the skin before
+/// a room, with the scenario's disturbances. The picture of a frame depends on world, view, lit set and frame
 /// number alone, not on what was drawn before.
 class FrameRenderer {
   public:
@@ -27,7 +28,7 @@ class FrameRenderer {
     [[nodiscard]] std::vector<Spot> spotsAt(const Isometry3d& T_r_v) const;
     [[nodiscard]] bool bumped(std::size_t frame) const;
     void drawSpot(cv::Mat& light, const Spot& spot) const;
-    void disturb(cv::Mat& light, std::size_t frame) const;
+    void passBy(cv::Mat& light, std::size_t frame) const;
     [[nodiscard]] cv::Mat expose(const cv::Mat& light, std::uint64_t noiseSeed) const;
 
     const World& world_;
@@ -35,7 +36,10 @@ class FrameRenderer {
     std::size_t frames_;
     cv::Mat background_;             ///< CV_32F
     std::vector<Spot> spots_;        ///< per module; no peak where it can't be seen
-    std::vector<Spot> bumpedSpots_;  ///< after the camera was knocked
+    cv::Mat bumpedBackground_;       ///< after the camera was knocked; empty in views where it is not
+    std::vector<Spot> bumpedSpots_;  ///< the same
+    cv::Mat lamp_;                   ///< of a flickering lamp; empty without one
+    Person person_;                  ///< empty without one
     std::vector<float> noise_;       ///< standard normal numbers, read from random places
     std::unordered_map<ModuleId, std::size_t> index_;
 };

@@ -57,12 +57,12 @@ Scenario freeForm() {
 }
 
 Scenario shoeSole() {
-    Scenario s = base("shoe-sole", "one patch of 23 modules under a shoe, six of them covered");
+    Scenario s = base("shoe-sole", "one patch of 23 modules under a shoe, six in its middle under a business card");
     s.patches.push_back(onSurface(SurfaceKind::Sole, 0, 0, 23));
     s.patches.back().raggedness = 0;
     s.views.count = 4;
     s.views.distance = 0.5;
-    s.disturbances.occluder = true;
+    s.covered = 6;
     return s;
 }
 
@@ -160,6 +160,18 @@ std::vector<Scenario> makeScenarios() {
     s.description = "the free form with cables, one detection in ten false";
     s.cables = true;
     s.views.outliers = 0.1;
+    all.push_back(s);
+
+    s = freeForm();
+    s.name = "misaligned";
+    s.description = "the free form, every accelerometer soldered on askew by half a degree about each axis";
+    s.sensors.misalignment = 0.5 * kDegree;
+    all.push_back(s);
+
+    s = plane();
+    s.name = "parallel-poses";
+    s.description = "the plane, all poses turns about gravity: too little to tell how patches are bent";
+    s.sensors.parallelPoses = true;
     all.push_back(s);
 
     Scenario small = base("", "");

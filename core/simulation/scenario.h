@@ -88,6 +88,7 @@ struct Scenario {
     std::string description;
     std::vector<ModuleTemplate> templates{paperHexagon()};
     std::vector<PatchPlan> patches;
+    std::size_t covered = 0;        ///< modules in the middle of the first patch that lie under a business card
     bool cables = false;            ///< consecutive patches are wired to each other
     std::vector<Vector3d> outward;  ///< where cameras stand, per patch; empty: along the patch's normal
     SensorOptions sensors;

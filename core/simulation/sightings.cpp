@@ -24,6 +24,16 @@ bool crosses(const Tube& tube, const Vector3d& a, const Vector3d& b) {
     return (a + s * d1 - tube.from - t * d2).norm() < tube.radius;
 }
 
+bool crosses(const Card& card, const Vector3d& a, const Vector3d& b) {
+    const Isometry3d T_k_r = card.T_r_k.inverse();
+    const Vector3d p = T_k_r * a;
+    const Vector3d q = T_k_r * b;
+    if (p.z() * q.z() >= 0)
+        return false;
+    const Vector3d hit = p + p.z() / (p.z() - q.z()) * (q - p);
+    return std::abs(hit.x()) < 0.5 * card.width && std::abs(hit.y()) < 0.5 * card.height;
+}
+
 }  // namespace
 
 Eigen::Vector4d occluderOf(const World& world, std::size_t view) {
@@ -56,6 +66,10 @@ std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::
     const Vector3d start = led_r + 0.001 * T_r_u.linear().col(2);
     for (const Tube& tube : world.tubes) {
         if (crosses(tube, start, camera_r))
+            return std::nullopt;
+    }
+    for (const Card& card : world.cards) {
+        if (crosses(card, led_r, camera_r))
             return std::nullopt;
     }
     const Eigen::Vector4d hidden = occluderOf(world, view);

@@ -202,6 +202,8 @@ World buildWorld(const Scenario& scenario, std::uint64_t seed) {
         link.a = ids[link.a.value];
         link.b = ids[link.b.value];
     }
+    if (scenario.covered > 0)
+        layCard(world, scenario.covered);
     poseBody(world);
     placeCameras(world);
     return world;

@@ -19,6 +19,13 @@ struct Tube {
     double radius = 0;
 };
 
+/// Something flat and opaque that lies on the skin.
+struct Card {
+    Isometry3d T_r_k = Isometry3d::Identity();  ///< middle of the card, z away from the skin
+    double width = 0.0856;                      ///< m, along x; a business card
+    double height = 0.054;                      ///< m, along y
+};
+
 /// What really is. Everything in it follows from a scenario and a seed.
 struct World {
     Scenario scenario;
@@ -30,7 +37,14 @@ struct World {
     std::vector<Vector3d> gravity_r;  ///< per pose: what an ideal accelerometer reads, body frame, m/s^2
     std::vector<Isometry3d> T_r_v;    ///< per view
     std::vector<Tube> tubes;
+    std::vector<Card> cards;
+    std::vector<std::size_t> covered;  ///< modules whose LED lies under a card, in increasing order
 };
+
+/// Lays a business card on the middle of the first patch, turned and shifted so that it covers the LEDs of exactly
+/// `count` modules and keeps as far as it can from the edges of being one more or less: it hides the same modules from
+/// wherever a camera looks. Throws std::logic_error where no place gives that many.
+void layCard(World& world, std::size_t count);
 
 /// Lays out the patches, adds mechanical play, wires cables, poses the body and places cameras so that consecutive
 /// views overlap. The same scenario and seed give the same world.
@@ -48,7 +62,7 @@ struct Visibility {
 };
 
 /// Pixel of a module's LED in a view, or nothing where the camera does not see it: turned away, out of the picture,
-/// behind a tube or the occluder.
+/// behind a tube, a card or the occluder.
 [[nodiscard]] std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module,
                                                    const Visibility& visibility);
 /// The same with the scenario's own limits.

@@ -134,6 +134,91 @@ TEST(Renderer, EachDisturbanceChangesThePictureAsItSays) {
     EXPECT_GT(difference(mirror[0], calm[0]), 0);
 }
 
+cv::Mat ledLight(const FrameRenderer& renderer, const World& world, std::size_t frame) {
+    cv::Mat light;
+    cv::subtract(renderer.render(allOf(world), frame), renderer.render({}, frame), light, cv::noArray(), CV_32F);
+    return light;
+}
+
+TEST(Renderer, WhoStandsInFrontHidesLedsWithASoftEdge) {
+    const auto still = [](Scenario& s) { s.pictures.readNoise = s.pictures.shotNoise = 0; };
+    const World open = worldWith(still);
+    const World passed = worldWith([&](Scenario& s) {
+        still(s);
+        s.disturbances.person = true;
+    });
+    constexpr std::size_t kFrames = 25;
+    const FrameRenderer alone(open, 0, kFrames);
+    const FrameRenderer crowded(passed, 0, kFrames);
+    int hidden = 0;
+    int shown = 0;
+    for (std::size_t frame = 0; frame < kFrames; ++frame) {
+        const cv::Mat free = ledLight(alone, open, frame);
+        const cv::Mat seen = ledLight(crowded, passed, frame);
+        for (std::size_t u = 0; u < open.T_r_u.size(); ++u) {
+            const auto pixel = visiblePixel(open, 0, u);
+            if (!pixel)
+                continue;
+            const cv::Point place(cvRound(pixel->x()), cvRound(pixel->y()));
+            ASSERT_GT(free.at<float>(place), 50);
+            hidden += seen.at<float>(place) < 1 ? 1 : 0;
+            shown += seen.at<float>(place) == free.at<float>(place) ? 1 : 0;
+        }
+    }
+    EXPECT_GT(hidden, 10) << "he walks through the whole picture";
+    EXPECT_GT(shown, hidden) << "and hides little of it at a time";
+
+    const Person person = paintPerson(open.scenario.camera, open.scenario.pictures);
+    EXPECT_GT(cv::countNonZero(person.cover > 0.999), 10000);
+    EXPECT_GT(cv::countNonZero((person.cover > 0.2) & (person.cover < 0.8)), 1000);
+}
+
+TEST(Renderer, AKnockShiftsTheWholePictureAsItShiftsTheLeds) {
+    constexpr double kBump = 8;
+    const World world = worldWith([](Scenario& s) {
+        s.pictures.readNoise = s.pictures.shotNoise = 0;
+        s.disturbances.bump_px = kBump;
+    });
+    const FrameRenderer renderer(world, 1, 10);
+    cv::Mat before;
+    cv::Mat after;
+    renderer.render({}, 0).convertTo(before, CV_32F);
+    renderer.render({}, 9).convertTo(after, CV_32F);
+    cv::Mat window;
+    cv::createHanningWindow(window, before.size(), CV_32F);
+    const cv::Point2d scene = cv::phaseCorrelate(before, after, window);
+    EXPECT_NEAR(std::hypot(scene.x, scene.y), kBump, 1);
+
+    const cv::Mat first = ledLight(renderer, world, 0);
+    const cv::Mat last = ledLight(renderer, world, 9);
+    const cv::Moments a = cv::moments(first);
+    const cv::Moments b = cv::moments(last);
+    // The knock also rolls the camera a little, and LEDs are not all in the middle.
+    EXPECT_NEAR(b.m10 / b.m00 - a.m10 / a.m00, scene.x, 1);
+    EXPECT_NEAR(b.m01 / b.m00 - a.m01 / a.m00, scene.y, 1);
+    EXPECT_EQ(difference(FrameRenderer(world, 0, 10).render({}, 0), FrameRenderer(world, 0, 10).render({}, 9)), 0)
+        << "every second view only";
+}
+
+TEST(Renderer, BoardsShowWhereTheirLedsAre) {
+    const World world = worldWith([](Scenario& s) { s.pictures.readNoise = s.pictures.shotNoise = 0; });
+    const cv::Mat picture = FrameRenderer(world, 0, 10).render({}, 0);
+    int brighter = 0;
+    int all = 0;
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+        const auto pixel = visiblePixel(world, 0, u);
+        if (!pixel)
+            continue;
+        // The LED's housing is brighter than the board round it.
+        const cv::Point led(cvRound(pixel->x()), cvRound(pixel->y()));
+        const cv::Mat round = picture(cv::Rect(led.x - 6, led.y - 6, 13, 13));
+        brighter += picture.at<unsigned char>(led) > cv::mean(round)[0] + 3 ? 1 : 0;
+        ++all;
+    }
+    EXPECT_GT(all, 5);
+    EXPECT_EQ(brighter, all);
+}
+
 TEST(Renderer, AnOccluderHidesLeds) {
     const World world = worldWith([](Scenario& s) { s.disturbances.occluder = true; });
     const World open = worldWith([](Scenario&) {});

@@ -106,14 +106,41 @@ TEST(World, SensorErrorsHaveTheSizeAskedFor) {
         squares += (first.acceleration - world.T_r_u[u].linear().transpose() * world.gravity_r[0]).squaredNorm();
     }
     EXPECT_NEAR(std::sqrt(squares / static_cast<double>(3 * world.T_r_u.size())), 0.3, 0.02);
+
+    // A chip turned by w on its board reads w x a more: two thirds of |w|^2 |a|^2, and nothing longer or shorter.
+    scenario.sensors.bias = 0;
+    scenario.sensors.misalignment = 0.5 * kDegree;
+    const auto askew = simulateGravity(buildWorld(scenario, 3));
+    squares = 0;
+    for (std::size_t i = 0; i < askew.size(); ++i) {
+        const Vector3d ideal =
+            world.T_r_u[i / world.gravity_r.size()].linear().transpose() * world.gravity_r[i % world.gravity_r.size()];
+        EXPECT_NEAR(askew[i].acceleration.norm(), kStandardGravity, 1e-9);
+        squares += (askew[i].acceleration - ideal).squaredNorm();
+    }
+    const double expected = std::sqrt(2.0) * scenario.sensors.misalignment * kStandardGravity;
+    EXPECT_NEAR(std::sqrt(squares / static_cast<double>(askew.size())), expected, 0.05 * expected);
+}
+
+TEST(World, MisalignedChipsAreOneOfTheScenarios) {
+    const World world = buildWorld(*findScenario("misaligned"), 1);
+    Scenario straight = world.scenario;
+    EXPECT_GT(straight.sensors.misalignment, 0);
+    straight.sensors.misalignment = 0;
+    EXPECT_NE(simulateGravity(world)[0].acceleration, simulateGravity(buildWorld(straight, 1))[0].acceleration);
 }
 
 TEST(World, ParallelPosesAreParallel) {
-    Scenario scenario = *findScenario("plane");
-    scenario.sensors.parallelPoses = true;
-    const World world = buildWorld(scenario, 4);
+    const World world = buildWorld(*findScenario("parallel-poses"), 4);
+    ASSERT_GE(world.gravity_r.size(), 2U);
     for (const Vector3d& g : world.gravity_r)
         EXPECT_EQ(g, world.gravity_r.front());
+    // No module ever reads anything else than the first time, but for the noise.
+    const auto readings = simulateGravity(world);
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+        const GravityReading& first = readings[i - i % world.gravity_r.size()];
+        EXPECT_LT((readings[i].acceleration - first.acceleration).norm(), 8 * world.scenario.sensors.noise);
+    }
 }
 
 TEST(World, OutliersComeInTheShareAskedFor) {
@@ -139,6 +166,35 @@ TEST(World, ATubeHidesWhatLiesBehindIt) {
     const Vector3d middle = 0.5 * (led + world.T_r_v[0].translation());
     world.tubes.push_back({middle - Vector3d(0.05, 0, 0), middle + Vector3d(0.05, 0, 0), 0.02});
     EXPECT_FALSE(visiblePixel(world, 0, 0));
+}
+
+TEST(World, ACardCoversTheSameSixModulesOfTheSoleInEveryView) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const World world = buildWorld(*findScenario("shoe-sole"), seed);
+        World bare = world;
+        bare.cards.clear();
+        ASSERT_EQ(world.cards.size(), 1U);
+        ASSERT_EQ(world.covered.size(), 6U);
+        EXPECT_EQ(world.covered.front(), 0U) << "the middle one among them";
+        for (std::size_t v = 0; v < world.T_r_v.size(); ++v) {
+            for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+                const bool covered = std::binary_search(world.covered.begin(), world.covered.end(), u);
+                EXPECT_EQ(visiblePixel(world, v, u).has_value(), visiblePixel(bare, v, u) && !covered)
+                    << "seed " << seed << ", view " << v << ", module " << u;
+            }
+        }
+        // It lies on the boards, not in them.
+        for (const std::size_t u : world.covered) {
+            for (const Vector2d& corner : world.skin.templateOf(u).outline)
+                EXPECT_LT((world.cards[0].T_r_k.inverse() * (world.T_r_u[u] * Vector3d(corner.x(), corner.y(), 0))).z(),
+                          0);
+        }
+    }
+}
+
+TEST(World, ACardCoversNoMoreThanItCan) {
+    World world = buildWorld(*findScenario("plane"), 1);
+    EXPECT_THROW(layCard(world, 20), std::logic_error);
 }
 
 TEST(World, CodedScansGiveEveryModuleAWordOfItsOwn) {

@@ -1,0 +1,394 @@
+#include "core/simulation/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/geometry/random.h"
+
+namespace skincal {
+namespace {
+
+constexpr double kPi = 180 * kDegree;
+constexpr int kFine = 2;  // edges are drawn this much finer than pixels, then averaged
+
+/// Flat polygons that are drawn together, the farthest group first.
+struct Group {
+    struct Polygon {
+        std::vector<Vector3d> corners;  // camera frame
+        double brightness = 1;          // 1 is the mean of the picture
+    };
+    double depth = 0;
+    std::vector<Polygon> polygons;
+};
+
+double levelOf(const RenderOptions& options, double brightness) {
+    constexpr double kFullTexture = 45;
+    return options.background * std::max(0.05, 1 + options.texture / kFullTexture * (brightness - 1));
+}
+
+/// A lamp over the camera's left shoulder, and what the walls return.
+double shade(const Vector3d& normal_v) {
+    static const Vector3d kLamp = Vector3d(-0.45, -0.65, -0.6).normalized();
+    return 0.4 + 0.6 * std::max(0.0, normal_v.dot(kLamp));
+}
+
+cv::Mat clouds(cv::Size size, cv::Size grain, Random& random) {
+    cv::Mat coarse(grain, CV_32F);
+    for (int y = 0; y < coarse.rows; ++y) {
+        for (int x = 0; x < coarse.cols; ++x)
+            coarse.at<float>(y, x) = static_cast<float>(random.normal());
+    }
+    cv::Mat fine;
+    cv::resize(coarse, fine, size, 0, 0, cv::INTER_CUBIC);
+    return fine;
+}
+
+/// Wall, shelf with books, a screen and a table, behind what the camera is focused on.
+cv::Mat paintRoom(const World& world, std::size_t view, cv::Size size) {
+    const RenderOptions& options = world.scenario.pictures;
+    Random random(world.seed + 7919 * view, "background");
+    const auto fill = [&](cv::Mat& picture, double x, double y, double width, double height, double brightness) {
+        const cv::Rect area(
+            static_cast<int>(std::lround(x * size.width)), static_cast<int>(std::lround(y * size.height)),
+            static_cast<int>(std::lround(width * size.width)), static_cast<int>(std::lround(height * size.height)));
+        cv::rectangle(picture, area, cv::Scalar(brightness), cv::FILLED);
+    };
+    cv::Mat room = 1 + 0.10 * clouds(size, cv::Size(5, 4), random);
+    const double shelf = random.uniform(0.05, 0.2);
+    const double first = random.uniform(-0.1, 0.5);
+    for (int row = 0; row < 2; ++row) {
+        const double bottom = shelf + 0.19 * (row + 1);
+        fill(room, first, bottom - 0.17, 0.45, 0.17, 0.55);
+        for (double x = first + 0.005; x < first + 0.44;) {
+            const double width = random.uniform(0.008, 0.03);
+            const double height = random.uniform(0.09, 0.15);
+            if (random.uniform() < 0.85)
+                fill(room, x, bottom - height, width - 0.002, height, random.uniform(0.4, 1.7));
+            x += width;
+        }
+        fill(room, first - 0.01, bottom, 0.47, 0.02, 1.3);
+    }
+    const double screen = first < 0.2 ? random.uniform(0.6, 0.75) : random.uniform(0.02, 0.15);
+    const double top = random.uniform(0.15, 0.35);
+    fill(room, screen, top, 0.24, 0.26, 0.3);
+    fill(room, screen + 0.008, top + 0.014, 0.224, 0.225, 1.35);
+    fill(room, screen + 0.10, top + 0.26, 0.03, 0.2, 0.35);
+
+    // The table runs to the picture's lower edge; its grain is fine along one direction.
+    const double edge = random.uniform(0.62, 0.74);
+    const double slope = random.uniform(-0.03, 0.03);
+    cv::Mat wood = 1.2 + 0.06 * clouds(size, cv::Size(6, 120), random) + 0.05 * clouds(size, cv::Size(4, 4), random);
+    cv::Mat mask = cv::Mat::zeros(size, CV_8U);
+    const std::vector<cv::Point> table{{0, static_cast<int>((edge - slope) * size.height)},
+                                       {size.width, static_cast<int>((edge + slope) * size.height)},
+                                       {size.width, size.height},
+                                       {0, size.height}};
+    cv::fillConvexPoly(mask, table, cv::Scalar(255));
+    wood.copyTo(room, mask);
+    for (int box = 0; box < 3; ++box)
+        fill(room, random.uniform(0, 0.9), edge - random.uniform(0.03, 0.12), random.uniform(0.03, 0.1), 0.15,
+             random.uniform(0.5, 1.4));
+    cv::GaussianBlur(room, room, cv::Size(0, 0), 2.5);
+    constexpr double kFullTexture = 45;
+    room = options.background * (1 + options.texture / kFullTexture * (room - 1));
+    return cv::max(room, 3.0);
+}
+
+/// Points of a circle or of a regular polygon in a module's plane.
+std::vector<Vector3d> disc(const Vector3d& middle, double radius, int corners, double turn = 0) {
+    std::vector<Vector3d> points;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = turn + 2 * kPi * i / corners;
+        points.emplace_back(middle + radius * Vector3d(std::cos(angle), std::sin(angle), 0));
+    }
+    return points;
+}
+
+void addModule(const Isometry3d& T_v_u, const ModuleTemplate& type, std::vector<Group>& groups) {
+    const Vector3d normal = T_v_u.linear().col(2);
+    if (normal.dot(T_v_u.translation()) >= 0)
+        return;  // seen from behind: the surface it lies on hides it
+    const double light = shade(normal);
+    const double depth = T_v_u.translation().norm();
+    const auto placed = [&](std::vector<Vector3d> corners, double brightness) {
+        for (Vector3d& p : corners)
+            p = T_v_u * p;
+        return Group::Polygon{std::move(corners), light * brightness};
+    };
+    const auto outline = [&](double scale, double z) {
+        std::vector<Vector3d> corners;
+        for (const Vector2d& p : type.outline)
+            corners.emplace_back(scale * p.x(), scale * p.y(), z);
+        return corners;
+    };
+    // Elastomer fills the gaps between boards: drawn before all of them.
+    groups.push_back({depth + 0.03, {placed(outline(1.16, -0.001), 0.45)}});
+    Group board{depth, {placed(outline(1.0, 0), 0.75), placed(outline(0.93, 0), 0.95)}};
+    for (const Vector3d& port : type.ports)
+        board.polygons.push_back(placed(disc(0.84 * port, 0.0013, 4, std::atan2(port.y(), port.x()) + kPi / 4), 1.9));
+    for (const SensorSite& sensor : type.sensors) {
+        const bool force = sensor.kind == "force";
+        board.polygons.push_back(
+            placed(disc(sensor.position, force ? 0.0019 : 0.0011, force ? 12 : 4), force ? 1.5 : 0.35));
+    }
+    board.polygons.push_back(placed(disc(type.led, 0.0015, 4, kPi / 4), 2.2));
+    groups.push_back(std::move(board));
+}
+
+void addTube(const Tube& tube, const Isometry3d& T_v_r, std::vector<Group>& groups) {
+    const Vector3d from = T_v_r * tube.from;
+    const Vector3d axis = T_v_r * tube.to - from;
+    const Vector3d a = axis.unitOrthogonal();
+    const Vector3d b = axis.normalized().cross(a);
+    constexpr int kRound = 36;
+    const int pieces = std::max(1, static_cast<int>(std::ceil(axis.norm() / 0.02)));
+    const auto direction = [&](int i) -> Vector3d {
+        return std::cos(2 * kPi * i / kRound) * a + std::sin(2 * kPi * i / kRound) * b;
+    };
+    const auto add = [&](std::vector<Vector3d> corners, const Vector3d& normal, double brightness) {
+        Vector3d middle = Vector3d::Zero();
+        for (const Vector3d& p : corners)
+            middle += p / static_cast<double>(corners.size());
+        if (normal.dot(middle) < 0)
+            groups.push_back({middle.norm() + 0.03, {{std::move(corners), brightness * shade(normal)}}});
+    };
+    for (int i = 0; i < kRound; ++i) {
+        for (int k = 0; k < pieces; ++k) {
+            const Vector3d low = from + axis * k / pieces;
+            const Vector3d high = from + axis * (k + 1) / pieces;
+            const Vector3d p = tube.radius * direction(i);
+            const Vector3d q = tube.radius * direction(i + 1);
+            add({low + p, low + q, high + q, high + p}, (p + q).normalized(), 1.25);
+        }
+    }
+    for (const double end : {0.0, 1.0}) {
+        std::vector<Vector3d> cap;
+        for (int i = 0; i < kRound; ++i)
+            cap.push_back(from + end * axis + tube.radius * direction(i));
+        add(std::move(cap), (2 * end - 1) * axis.normalized(), 0.8);
+    }
+}
+
+/// What patches that are not on a tube are mounted on: a plate that reaches a little beyond their boards.
+void addPlate(const World& world, const Isometry3d& T_v_r, std::vector<Group>& groups) {
+    constexpr double kReach = 0.034;  // m, from a board's middle
+    constexpr double kBehind = 0.08;  // m: drawn before everything that lies on it
+    std::vector<cv::Point2f> points;
+    Vector3d normal = Vector3d::Zero();
+    double depth = 0;
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+        const Isometry3d T_v_u = T_v_r * world.T_r_u[u];
+        const auto& plan = world.scenario.patches[static_cast<std::size_t>(world.patchOf[u])];
+        if (plan.surface == SurfaceKind::Cylinder || T_v_u.linear().col(2).dot(T_v_u.translation()) >= 0)
+            continue;
+        normal += T_v_u.linear().col(2);
+        depth = std::max(depth, T_v_u.translation().norm());
+        for (const Vector3d& corner : disc({0, 0, -0.004}, kReach, 16)) {
+            const Vector3d p = T_v_u * corner;
+            if (p.z() > 0.01)
+                points.emplace_back(static_cast<float>(p.x() / p.z()), static_cast<float>(p.y() / p.z()));
+        }
+    }
+    if (points.size() < 3)
+        return;
+    std::vector<cv::Point2f> hull;
+    cv::convexHull(points, hull);
+    const auto lifted = [&](double scale) {
+        cv::Point2f middle(0, 0);
+        for (const cv::Point2f& p : hull)
+            middle += p * (1.0F / static_cast<float>(hull.size()));
+        std::vector<Vector3d> corners;
+        for (const cv::Point2f& p : hull) {
+            const cv::Point2f q = middle + static_cast<float>(scale) * (p - middle);
+            corners.push_back(depth * Vector3d(static_cast<double>(q.x), static_cast<double>(q.y), 1));
+        }
+        return corners;
+    };
+    const double light = shade(normal.normalized());
+    groups.push_back({depth + kBehind, {{lifted(1.02), 1.9 * light}, {lifted(1.0), 1.45 * light}}});
+}
+
+/// White, with a few lines of print.
+Group cardGroup(const Card& card, const Isometry3d& T_v_r) {
+    const Isometry3d T_v_k = T_v_r * card.T_r_k;
+    const double light = shade(T_v_k.linear().col(2) * (T_v_k.linear().col(2).dot(T_v_k.translation()) < 0 ? 1 : -1));
+    Group group;
+    const auto add = [&](double x0, double y0, double x1, double y1, double brightness) {
+        std::vector<Vector3d> corners;
+        for (const auto& [x, y] : {std::pair(x0, y0), std::pair(x1, y0), std::pair(x1, y1), std::pair(x0, y1)})
+            corners.push_back(T_v_k * Vector3d(x * card.width, y * card.height, 0));
+        group.polygons.push_back({std::move(corners), light * brightness});
+    };
+    add(-0.5, -0.5, 0.5, 0.5, 2.3);
+    add(-0.42, 0.22, 0.1, 0.33, 0.8);
+    for (int line = 0; line < 3; ++line)
+        add(-0.42, -0.36 + 0.12 * line, 0.05 + 0.1 * line, -0.32 + 0.12 * line, 1.2);
+    add(0.25, -0.1, 0.42, 0.25, 1.0);
+    return group;
+}
+
+/// Draws over `fine` and marks in `covered` what was drawn on.
+void drawGroup(const Group& group, const World& world, int margin, cv::Mat& fine, cv::Mat& covered) {
+    constexpr int kShift = 4;
+    constexpr double kUnits = 1 << kShift;
+    for (const Group::Polygon& polygon : group.polygons) {
+        std::vector<cv::Point> corners;
+        for (const Vector3d& p : polygon.corners) {
+            // Far outside the picture a lens model says nothing.
+            const auto pixel = p.head<2>().norm() < p.z() ? world.scenario.camera.project(p) : std::nullopt;
+            if (!pixel)
+                break;
+            const Vector2d place = kFine * (*pixel + Vector2d::Constant(margin + 0.5)) - Vector2d::Constant(0.5);
+            corners.emplace_back(static_cast<int>(std::lround(kUnits * place.x())),
+                                 static_cast<int>(std::lround(kUnits * place.y())));
+        }
+        if (corners.size() < polygon.corners.size())
+            continue;
+        cv::fillConvexPoly(fine, corners, cv::Scalar(levelOf(world.scenario.pictures, polygon.brightness)), cv::LINE_8,
+                           kShift);
+        cv::fillConvexPoly(covered, corners, cv::Scalar(1.0), cv::LINE_8, kShift);
+    }
+}
+
+/// The room with the body seen once more, upside down, in a polished surface in front of it.
+void paintMirror(const World& world, int margin, const cv::Mat& body, const cv::Mat& covered, cv::Mat& scene) {
+    const double share = world.scenario.disturbances.reflection;
+    const double edge = mirrorEdge(world.scenario.camera) + margin;
+    for (int y = static_cast<int>(std::ceil(edge)); y < scene.rows; ++y) {
+        const int above = static_cast<int>(std::lround(2 * edge)) - y;
+        if (above < 0)
+            break;
+        const cv::Mat image =
+            share * body.row(above).mul(covered.row(above)) + scene.row(y).mul(1 - share * covered.row(above));
+        image.copyTo(scene.row(y));
+    }
+}
+
+/// A cardboard box that somebody left in front of the camera.
+void paintOccluder(const World& world, std::size_t view, int margin, cv::Mat& scene) {
+    const Eigen::Vector4d hidden = occluderOf(world, view);
+    if (hidden[2] <= 0)
+        return;
+    const auto area = [&](double x, double y, double width, double height) {
+        return cv::Rect(static_cast<int>(std::lround(hidden[0] + x * hidden[2])) + margin,
+                        static_cast<int>(std::lround(hidden[1] + y * hidden[3])) + margin,
+                        static_cast<int>(std::lround(width * hidden[2])),
+                        static_cast<int>(std::lround(height * hidden[3])));
+    };
+    const auto paint = [&](const cv::Rect& where, double brightness) {
+        cv::rectangle(scene, where, cv::Scalar(levelOf(world.scenario.pictures, brightness)), cv::FILLED);
+    };
+    paint(area(0, 0, 1, 1), 1.75);
+    paint(area(0, 0, 1, 0.3), 2.0);  // the lid
+    paint(area(0, 0.29, 1, 0.02), 1.2);
+    paint(area(0.42, 0, 0.16, 0.55), 2.3);   // tape
+    paint(area(0.1, 0.62, 0.25, 0.2), 1.1);  // a label
+}
+
+}  // namespace
+
+double mirrorEdge(const CameraModel& camera) {
+    return 0.66 * camera.height;
+}
+
+cv::Mat paintScene(const World& world, std::size_t view, int margin) {
+    const CameraModel& camera = world.scenario.camera;
+    const RenderOptions& options = world.scenario.pictures;
+    const cv::Size size(camera.width + 2 * margin, camera.height + 2 * margin);
+    const cv::Mat room = paintRoom(world, view, size);
+
+    const Isometry3d T_v_r = world.T_r_v[view].inverse();
+    std::vector<Group> groups;
+    for (const Tube& tube : world.tubes)
+        addTube(tube, T_v_r, groups);
+    addPlate(world, T_v_r, groups);
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
+        addModule(T_v_r * world.T_r_u[u], world.skin.templateOf(u), groups);
+    std::stable_sort(groups.begin(), groups.end(), [](const Group& x, const Group& y) { return x.depth > y.depth; });
+    for (const Card& card : world.cards)
+        groups.push_back(cardGroup(card, T_v_r));
+
+    cv::Mat fine = cv::Mat::zeros(size * kFine, CV_32F);
+    cv::Mat fineCovered = cv::Mat::zeros(size * kFine, CV_32F);
+    for (const Group& group : groups)
+        drawGroup(group, world, margin, fine, fineCovered);
+    cv::Mat body;
+    cv::Mat covered;
+    cv::resize(fine, body, size, 0, 0, cv::INTER_AREA);
+    cv::resize(fineCovered, covered, size, 0, 0, cv::INTER_AREA);
+
+    cv::Mat scene = room.clone();
+    if (world.scenario.disturbances.reflection > 0)
+        paintMirror(world, margin, body, covered, scene);
+    scene = body + scene.mul(1 - covered);
+    paintOccluder(world, view, margin, scene);
+    cv::GaussianBlur(scene, scene, cv::Size(0, 0), options.blur_px);
+    return cv::max(scene, 3.0);
+}
+
+cv::Mat turnScene(const cv::Mat& scene, const CameraModel& camera, const Matrix3d& R_v_b) {
+    const int margin = (scene.cols - camera.width) / 2;
+    cv::Mat map(camera.height, camera.width, CV_32FC2);
+    for (int y = 0; y < map.rows; ++y) {
+        for (int x = 0; x < map.cols; ++x) {
+            const Vector3d ray = R_v_b * camera.unproject(Vector2d(x, y)).homogeneous();
+            const Vector2d pixel = camera.project(ray).value_or(Vector2d(x, y));
+            map.at<cv::Vec2f>(y, x) = {static_cast<float>(pixel.x() + margin), static_cast<float>(pixel.y() + margin)};
+        }
+    }
+    cv::Mat turned;
+    cv::remap(scene, turned, map, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    return turned;
+}
+
+Person paintPerson(const CameraModel& camera, const RenderOptions& options) {
+    // Drawn for a picture of 720 lines and scaled: 0.6 m broad shoulders at some 3 m.
+    constexpr int kWidth = 280;
+    constexpr int kHeight = 720;
+    cv::Mat brightness(kHeight, kWidth, CV_32F, cv::Scalar(1.5));
+    cv::Mat cover = cv::Mat::zeros(kHeight, kWidth, CV_32F);
+    const auto blob = [&](cv::Point middle, cv::Size radii, double turn, double level) {
+        cv::ellipse(brightness, middle, radii, turn, 0, 360, cv::Scalar(level), cv::FILLED);
+        cv::ellipse(cover, middle, radii, turn, 0, 360, cv::Scalar(1), cv::FILLED);
+    };
+    const auto shape = [&](const std::vector<cv::Point>& corners, double level) {
+        cv::fillConvexPoly(brightness, corners, cv::Scalar(level));
+        cv::fillConvexPoly(cover, corners, cv::Scalar(1));
+    };
+    shape({{84, 500}, {140, 500}, {140, 720}, {88, 720}}, 0.55);  // legs
+    shape({{140, 500}, {198, 500}, {192, 720}, {140, 720}}, 0.45);
+    blob({140, 272}, {82, 54}, 0, 1.5);  // shoulders and jacket
+    shape({{62, 270}, {218, 270}, {206, 400}, {210, 530}, {72, 530}, {76, 400}}, 1.5);
+    blob({68, 390}, {20, 138}, 5, 1.25);  // arms and hands
+    blob({212, 390}, {20, 138}, -8, 1.7);
+    blob({58, 535}, {15, 22}, 0, 1.9);
+    blob({230, 535}, {15, 22}, 0, 1.9);
+    shape({{122, 180}, {160, 180}, {166, 240}, {116, 240}}, 1.7);  // neck, hair, face
+    blob({139, 128}, {46, 58}, 0, 0.35);
+    blob({145, 150}, {37, 46}, 0, 2.1);
+    blob({130, 146}, {6, 3}, 0, 0.9);
+    blob({161, 146}, {6, 3}, 0, 0.9);
+    blob({146, 178}, {11, 3}, 0, 1.5);
+    cv::line(brightness, {141, 245}, {141, 530}, cv::Scalar(1.05), 3);  // the zip
+    Random random(1, "person");
+    brightness = brightness + 0.10 * clouds(brightness.size(), cv::Size(8, 20), random);
+    for (int x = 0; x < kWidth; ++x)
+        brightness.col(x) *= 1.25 - 0.5 * x / kWidth;  // lit from the left
+
+    Person person;
+    const double scale = camera.height / static_cast<double>(kHeight);
+    const cv::Size size(static_cast<int>(std::lround(kWidth * scale)), camera.height);
+    cv::resize(brightness, person.level, size, 0, 0, cv::INTER_LINEAR);
+    cv::resize(cover, person.cover, size, 0, 0, cv::INTER_LINEAR);
+    // He walks while the picture is exposed, nearer than the camera is focused.
+    const int smear = std::max(1, static_cast<int>(12 * scale));
+    for (cv::Mat* layer : {&person.level, &person.cover}) {
+        cv::blur(*layer, *layer, cv::Size(smear, 1));
+        cv::GaussianBlur(*layer, *layer, cv::Size(0, 0), 2.0 * scale);
+    }
+    person.level *= options.background;
+    return person;
+}
+
+}  // namespace skincal

@@ -1,6 +1,6 @@
 #include "core/formats/file_error.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace skincal {
 namespace {
@@ -15,16 +15,28 @@ std::string shown(std::string text) {
             --end;
         text = text.substr(0, end) + "…";
     }
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
-    return text;
+    return printable(std::move(text));
 }
 
 }  // namespace
 
+std::string printable(std::string text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+        if (byte < 0x20 || byte == 0x7F) {
+            text[i] = ' ';
+        } else if (byte == 0xC2 && next >= 0x80 && next < 0xA0) {
+            // U+0080 to U+009F: some terminals take these for escape sequences, too.
+            text.replace(i, 2, " ");
+        }
+    }
+    return text;
+}
+
 std::string FileError::message() const {
-    // The path was given by the caller and is never cut.
-    std::string text = file.string();
+    // Never cut: people copy it.
+    std::string text = printable(file.string());
     if (!place.empty())
         text += ": " + shown(place);
     return text + ": " + shown(problem);

@@ -5,6 +5,9 @@
 
 namespace skincal {
 
+/// For a line of a terminal: control characters, which a hostile file may hold, become spaces.
+[[nodiscard]] std::string printable(std::string text);
+
 /// A file that can't be read, written or believed.
 struct FileError {
     std::filesystem::path file;

@@ -22,6 +22,8 @@ tl::expected<std::string, FileError> readFile(const fs::path& file, std::size_t 
     const fs::file_status status = fs::status(file, error);
     if (status.type() == fs::file_type::not_found)
         return tl::unexpected(FileError{file, "", "expected a file, there is none"});
+    if (status.type() == fs::file_type::none)
+        return tl::unexpected(FileError{file, "", "expected a readable file: " + error.message()});
     if (status.type() != fs::file_type::regular)
         return tl::unexpected(FileError{file, "", "expected a regular file"});
     const auto size = fs::file_size(file, error);
@@ -35,11 +37,44 @@ tl::expected<std::string, FileError> readFile(const fs::path& file, std::size_t 
     return bytes;
 }
 
+tl::expected<fs::path, FileError> resolveOutput(const fs::path& file) {
+    std::error_code error;
+    // Following links, those of /proc included, which name no path: a device, a pipe or a directory stays what it is.
+    const fs::file_status status = fs::status(file, error);
+    const bool free = status.type() == fs::file_type::not_found;
+    if (!free && status.type() == fs::file_type::none)
+        return tl::unexpected(FileError{file, "", "can't write there: " + error.message()});
+    if (file.filename().empty() || (!free && status.type() != fs::file_type::regular))
+        return tl::unexpected(FileError{file, "", "expected a regular file, or none yet"});
+    fs::path target = file;
+    constexpr int kMaxLinks = 40;  // as the kernel has it
+    for (int i = 0; i < kMaxLinks && fs::is_symlink(fs::symlink_status(target, error)); ++i)
+        target = target.parent_path() / fs::read_symlink(target, error);
+    const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    if (!fs::is_directory(directory, error))
+        return tl::unexpected(
+            FileError{file, "", fmt::format("can't write there: there is no directory '{}'", directory.string())});
+    if (::access(directory.c_str(), W_OK | X_OK) != 0)
+        return tl::unexpected(FileError{file, "", fmt::format("can't write there: {}", std::strerror(errno))});
+    return target;
+}
+
+bool sameFile(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    if (fs::equivalent(a, b, error) && !error)
+        return true;
+    const fs::path one = fs::weakly_canonical(a, error);
+    return !error && one == fs::weakly_canonical(b, error) && !error;
+}
+
 tl::expected<void, FileError> writeFileAtomically(const fs::path& file, std::string_view bytes) {
     const auto failed = [&](const char* what) {
         return tl::unexpected(FileError{file, "", fmt::format("can't {}: {}", what, std::strerror(errno))});
     };
-    std::string pattern = file.string() + ".XXXXXX";
+    const auto target = resolveOutput(file);
+    if (!target)
+        return tl::unexpected(target.error());
+    std::string pattern = target->string() + ".XXXXXX";
     const int descriptor = ::mkstemp(pattern.data());
     if (descriptor < 0)
         return failed("write there");
@@ -58,7 +93,7 @@ tl::expected<void, FileError> writeFileAtomically(const fs::path& file, std::str
     const bool ok = written == bytes.size() && ::fchmod(descriptor, 0666 & ~mask) == 0 && ::fsync(descriptor) == 0;
     const int reason = errno;
     ::close(descriptor);
-    if (!ok || ::rename(pattern.c_str(), file.c_str()) != 0) {
+    if (!ok || ::rename(pattern.c_str(), target->c_str()) != 0) {
         errno = ok ? errno : reason;
         auto result = failed("write the file");
         ::unlink(pattern.c_str());
@@ -89,8 +124,13 @@ tl::expected<fs::path, std::string> resolveInside(const fs::path& directory, con
     if (error)
         return outside;
     const fs::path back = full.lexically_relative(root);
-    if (back.empty() || *back.begin() == ".." || back == ".")
+    if (back.empty() || *back.begin() == ".." || back == ".") {
+        const fs::path written = path.lexically_normal();
+        if (written != "." && *written.begin() != "..")
+            return tl::unexpected<std::string>("expected a path inside the recording, a symbolic link in '" + relative +
+                                               "' leads out of it");
         return outside;
+    }
     return full;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "core/formats/image_header.h"
 #include "tests/unit/formats/temporary_directory.h"
@@ -28,6 +29,31 @@ TEST(Files, WritingIsAllOrNothing) {
         ++files;
     }
     EXPECT_EQ(files, 2U) << "no temporary file stays behind";
+}
+
+TEST(Files, WritingLeavesLinksPipesAndDevicesAsTheyAre) {
+    const test::TemporaryDirectory directory;
+    test::writeText(directory / "real.txt", "old");
+    std::filesystem::create_symlink("real.txt", directory / "link");
+    std::filesystem::create_symlink("new.txt", directory / "dangling");
+    ASSERT_TRUE(writeFileAtomically(directory / "link", "new"));
+    ASSERT_TRUE(writeFileAtomically(directory / "dangling", "made"));
+    EXPECT_TRUE(std::filesystem::is_symlink(directory / "link"));
+    EXPECT_EQ(test::readText(directory / "real.txt"), "new");
+    EXPECT_EQ(test::readText(directory / "new.txt"), "made");
+    ASSERT_EQ(::mkfifo((directory / "pipe").c_str(), 0600), 0);
+    std::filesystem::create_symlink("pipe", directory / "to-pipe");
+    std::filesystem::create_symlink("/dev/null", directory / "to-null");
+    for (const char* name : {"pipe", "to-pipe", "to-null", "."}) {
+        const auto result = writeFileAtomically(directory / name, "x");
+        ASSERT_FALSE(result) << name;
+        EXPECT_THAT(result.error().problem, testing::HasSubstr("expected a regular file"));
+    }
+    EXPECT_TRUE(std::filesystem::is_fifo(directory / "pipe"));
+    EXPECT_THAT(resolveOutput(directory / "none/a").error().problem, testing::HasSubstr("there is no directory"));
+    EXPECT_TRUE(sameFile(directory / "link", directory / "real.txt"));
+    EXPECT_TRUE(sameFile(directory / "not-yet", directory / "x/../not-yet"));
+    EXPECT_FALSE(sameFile(directory / "new.txt", directory / "real.txt"));
 }
 
 TEST(Files, ReadingRefusesWhatIsTooLargeOrNoFile) {

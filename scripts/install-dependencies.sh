@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   git cmake g++ ninja-build ccache pkg-config
   libeigen3-dev libceres-dev libopencv-dev libboost-graph-dev libvtk9-dev libcli11-dev nlohmann-json3-dev
-  libexpected-dev libfmt-dev libssl-dev
+  libexpected-dev libfmt-dev libssl-dev libjpeg-dev libpng-dev libx11-dev
   libgtest-dev libgmock-dev libbenchmark-dev liburdfdom-dev clang-format-14
   xvfb xauth fonts-dejavu-core
 )

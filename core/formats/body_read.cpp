@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <set>
@@ -29,6 +30,10 @@ auto optionalAt(const JsonCursor& cursor, std::string_view key, Read read) -> st
     return read(cursor.at(key));
 }
 
+std::string textOr(const JsonCursor& cursor, std::string_view key, const char* otherwise) {
+    return cursor.holds(key) ? cursor.at(key).text() : otherwise;
+}
+
 double readNumber(const JsonCursor& cursor) {
     return cursor.number();
 }
@@ -43,7 +48,7 @@ Isometry3d readPose(const JsonCursor& cursor) {
     const Quaterniond rotation(q[3].number(), q[0].number(), q[1].number(), q[2].number());
     if (std::abs(rotation.norm() - 1) > 1e-3)
         cursor.at("quaternion_xyzw").fail(fmt::format("expected a unit quaternion, its norm is {:g}", rotation.norm()));
-    return makeIsometry(rotation.normalized().toRotationMatrix(), cursor.at("translation").vector3());
+    return makeIsometry(rotation.normalized().toRotationMatrix(), cursor.at("translation").translation());
 }
 
 Matrix6d readCovariance(const JsonCursor& cursor) {
@@ -120,7 +125,7 @@ BodyLink readLink(const JsonCursor& cursor) {
     link.link.a_port = static_cast<int>(cursor.at("a_port").integer(0, kMaxPorts));
     link.link.b_port = static_cast<int>(cursor.at("b_port").integer(0, kMaxPorts));
     link.kind = static_cast<LinkKind>(readWord<2>(cursor.at("kind"), {"adjacent", "cable"}));
-    link.reason = cursor.at("reason").text();
+    link.reason = textOr(cursor, "reason", "");
     link.distance = optionalAt(cursor, "distance", readNumber);
     return link;
 }
@@ -130,8 +135,7 @@ BodyView readView(const JsonCursor& cursor) {
     view.name = cursor.at("name").text();
     view.T_body_camera = optionalAt(cursor, "T_body_camera", readPose);
     view.residual_rms_px = optionalAt(cursor, "residual_rms_px", readNumber);
-    if (cursor.holds("status"))
-        view.status = cursor.at("status").text();
+    view.status = textOr(cursor, "status", "");
     for (const JsonCursor& item : cursor.at("observations").array(kMaxModules)) {
         BodyObservation o;
         o.module = readId(item.at("module"));
@@ -139,8 +143,7 @@ BodyView readView(const JsonCursor& cursor) {
         o.residual = optionalAt(item, "residual", readVector2);
         o.verdict = static_cast<ObservationVerdict>(
             readWord<4>(item.at("verdict"), {"used", "rejected", "not found", "ambiguous"}));
-        if (item.holds("reason"))
-            o.reason = item.at("reason").text();
+        o.reason = textOr(item, "reason", "");
         view.observations.push_back(std::move(o));
     }
     return view;
@@ -148,8 +151,6 @@ BodyView readView(const JsonCursor& cursor) {
 
 BodyQuality readQuality(const JsonCursor& cursor) {
     BodyQuality q;
-    q.modulesPlaced = static_cast<std::size_t>(cursor.at("modules_placed").integer(0, kMaxModules));
-    q.modulesTotal = static_cast<std::size_t>(cursor.at("modules_total").integer(0, kMaxModules));
     q.residual_rms_px = optionalAt(cursor, "residual_rms_px", readNumber);
     q.link_mismatch_rms = optionalAt(cursor, "link_mismatch_rms", readNumber);
     q.link_mismatch_max = optionalAt(cursor, "link_mismatch_max", readNumber);
@@ -237,9 +238,9 @@ tl::expected<BodyModel, FileError> parseBodyJson(std::string_view text, const st
                 "expected version 1, found {}: this body was written by a newer version of the program", version));
         BodyModel body;
         const JsonCursor generator = root.at("generator");
-        body.generator.program = generator.at("program").text();
-        body.generator.version = generator.at("version").text();
-        body.generator.method = generator.at("method").text();
+        body.generator.program = textOr(generator, "program", "");
+        body.generator.version = textOr(generator, "version", "");
+        body.generator.method = textOr(generator, "method", "");
         body.generator.options = readTextMap(generator, "options");
         body.generator.recording_sha256 = readTextMap(generator, "recording_sha256");
         body.body_frame = root.at("body_frame").text();
@@ -254,6 +255,9 @@ tl::expected<BodyModel, FileError> parseBodyJson(std::string_view text, const st
         for (const JsonCursor& item : root.at("views").array(kMaxViews))
             body.views.push_back(readView(item));
         body.quality = readQuality(root.at("quality"));
+        body.quality.modulesTotal = body.modules.size();
+        body.quality.modulesPlaced = static_cast<std::size_t>(std::count_if(
+            body.modules.begin(), body.modules.end(), [](const BodyModule& m) { return m.T_body_module.has_value(); }));
         checkReferences(root, body);
         return body;
     } catch (const FileErrorException& exception) {

@@ -132,7 +132,7 @@ Json arrayOf(const Items& items) {
 
 }  // namespace
 
-std::string bodyToJson(const BodyModel& body) {
+std::string bodyToJson(const BodyModel& body, const std::map<std::string, UnknownKeys>& unknownOfTypes) {
     Json json;
     json["format"] = "skincal-body";
     json["version"] = 1;
@@ -148,8 +148,11 @@ std::string bodyToJson(const BodyModel& body) {
         generator["recording_sha256"][key] = value;
     json["body_frame"] = body.body_frame;
     json["module_types"] = Json::array();
-    for (const ModuleTemplate& type : body.templates)
+    for (const ModuleTemplate& type : body.templates) {
         json["module_types"].push_back(templateToJson(type));
+        if (const auto unknown = unknownOfTypes.find(type.name); unknown != unknownOfTypes.end())
+            addKeys(json["module_types"].back(), unknown->second);
+    }
     json["quality"] = toJson(body.quality);
     json["patches"] = arrayOf(body.patches);
     json["modules"] = arrayOf(body.modules);
@@ -158,8 +161,9 @@ std::string bodyToJson(const BodyModel& body) {
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-tl::expected<void, FileError> writeBody(const BodyModel& body, const std::filesystem::path& file) {
-    return writeFileAtomically(file, bodyToJson(body));
+tl::expected<void, FileError> writeBody(const BodyModel& body, const std::filesystem::path& file,
+                                        const std::map<std::string, UnknownKeys>& unknownOfTypes) {
+    return writeFileAtomically(file, bodyToJson(body, unknownOfTypes));
 }
 
 }  // namespace skincal

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace skincal {
 namespace {
@@ -36,6 +37,38 @@ std::string placeOfNumber(std::string_view text, std::string_view what) {
     const auto found = text.find(what.substr(first + 1, last - first - 1));
     return found == std::string_view::npos ? std::string() : lineAndColumn(text, found + 1);
 }
+
+/// What the parser itself lets pass and a reader must not: memory without end, keys that contradict each other.
+class ParseLimits {
+  public:
+    explicit ParseLimits(const std::filesystem::path& file) : file_(file) {}
+
+    void check(int depth, nlohmann::json::parse_event_t event, const nlohmann::json& value) {
+        using Event = nlohmann::json::parse_event_t;
+        const bool opens = event == Event::object_start || event == Event::array_start;
+        if (opens && depth >= kMaxDepth)
+            throw FileErrorException{{file_, "", fmt::format("expected at most {} levels of nesting", kMaxDepth)}};
+        if ((opens || event == Event::value || event == Event::key) && ++count_ > kMaxJsonValues)
+            throw FileErrorException{{file_, "", fmt::format("expected at most {} values and keys", kMaxJsonValues)}};
+        if (event == Event::object_start)
+            keys_.emplace_back();
+        else if (event == Event::object_end)
+            keys_.pop_back();
+        else if (event == Event::key && !keys_.back().insert(value.get_ref<const std::string&>()).second)
+            throw FileErrorException{
+                {file_, "", fmt::format("expected each key of an object once, '{}' is there twice", shownKey(value))}};
+    }
+
+  private:
+    static std::string shownKey(const nlohmann::json& key) {
+        const auto& text = key.get_ref<const std::string&>();
+        return text.size() <= 100 ? text : text.substr(0, 97) + "…";
+    }
+
+    const std::filesystem::path& file_;
+    std::size_t count_ = 0;
+    std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
+};
 
 }  // namespace
 
@@ -103,6 +136,15 @@ std::vector<std::pair<std::string, JsonCursor>> JsonCursor::members() const {
     return result;
 }
 
+std::map<std::string, std::string> JsonCursor::membersBut(std::span<const std::string_view> known) const {
+    std::map<std::string, std::string> result;
+    for (const auto& [key, value] : value_->items()) {
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            result.emplace(key, value.dump());
+    }
+    return result;
+}
+
 double JsonCursor::number() const {
     if (!value_->is_number())
         fail(fmt::format("expected a number, found {}", shown(*value_)));
@@ -152,19 +194,24 @@ Vector3d JsonCursor::vector3() const {
     return {items[0].number(), items[1].number(), items[2].number()};
 }
 
+Vector3d JsonCursor::translation() const {
+    const Vector3d t = vector3();
+    if (t.cwiseAbs().maxCoeff() > kMaxTranslation)
+        fail(fmt::format("expected a translation within {:g} m per axis (metres, not millimetres)", kMaxTranslation));
+    return t;
+}
+
 nlohmann::json parseJson(std::string_view text, const std::filesystem::path& file) {
     // A byte order mark is harmless and some editors write one.
     if (text.substr(0, 3) == "\xEF\xBB\xBF")
         text.remove_prefix(3);
-    const auto limitDepth = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json&) {
-        const bool opens =
-            event == nlohmann::json::parse_event_t::object_start || event == nlohmann::json::parse_event_t::array_start;
-        if (opens && depth >= kMaxDepth)
-            throw FileErrorException{{file, "", fmt::format("expected at most {} levels of nesting", kMaxDepth)}};
+    ParseLimits limits(file);
+    const auto check = [&limits](int depth, nlohmann::json::parse_event_t event, const nlohmann::json& value) {
+        limits.check(depth, event, value);
         return true;
     };
     try {
-        return nlohmann::json::parse(text.begin(), text.end(), limitDepth);
+        return nlohmann::json::parse(text.begin(), text.end(), check);
     } catch (const nlohmann::json::parse_error& error) {
         throw FileErrorException{{file, lineAndColumn(text, error.byte), "expected well-formed JSON"}};
     } catch (const nlohmann::json::out_of_range& error) {

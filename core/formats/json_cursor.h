@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,12 @@
 #include "core/geometry/se3.h"
 
 namespace skincal {
+
+/// Above this a file is refused, whatever its keys mean: each value takes memory many times its length in the text.
+inline constexpr std::size_t kMaxJsonValues = 10'000'000;
+
+/// No body is larger than this, m.
+inline constexpr double kMaxTranslation = 1'000;
 
 /// Carries a FileError out of nested reading; caught where a reader ends, never seen by callers.
 struct FileErrorException {
@@ -34,12 +42,16 @@ class JsonCursor {
     /// Members of an object, by key.
     [[nodiscard]] std::vector<std::pair<std::string, JsonCursor>> members() const;
 
+    /// JSON text of the members that are not among `known`, by key.
+    [[nodiscard]] std::map<std::string, std::string> membersBut(std::span<const std::string_view> known) const;
+
     [[nodiscard]] double number() const;  ///< finite
     [[nodiscard]] double number(double low, double high) const;
     [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
     [[nodiscard]] std::string text() const;
     [[nodiscard]] Vector2d vector2() const;
     [[nodiscard]] Vector3d vector3() const;
+    [[nodiscard]] Vector3d translation() const;  ///< each axis within kMaxTranslation
     [[nodiscard]] const nlohmann::json& json() const { return *value_; }
     [[nodiscard]] const std::string& path() const { return path_; }
 
@@ -51,8 +63,9 @@ class JsonCursor {
     std::string path_;
 };
 
-/// Parses text as JSON; throws FileErrorException with line and column. Numbers out of range are refused; nesting is
-/// limited, so that hostile files can't exhaust the stack.
+/// Parses text as JSON; throws FileErrorException with line and column. Numbers out of range and keys
+/// that an object holds twice are refused; nesting and the count of values and keys are limited, so that hostile files
+/// exhaust neither stack nor memory.
 [[nodiscard]] nlohmann::json parseJson(std::string_view text, const std::filesystem::path& file);
 
 /// What a value is, for messages: "a string", "an object", …

@@ -29,6 +29,9 @@ struct Decision {
     std::string reason;
 };
 
+/// Keys that the page does not name, each with its JSON text: kept by whoever writes the file again.
+using UnknownKeys = std::map<std::string, std::string>;
+
 /// A *.skinrec directory: everything that was measured, nothing that was computed.
 struct Recording {
     Skin skin;
@@ -36,6 +39,10 @@ struct Recording {
     CameraModel camera;
     std::vector<RecordedView> views;
     std::vector<Decision> decisions;
+    std::string gravityFile;     ///< as read; writers use gravity.csv
+    std::string detectionsFile;  ///< as read, empty where there is none; written detections.csv
+    UnknownKeys unknown{};       ///< of recording.json itself
+    std::map<std::string, UnknownKeys> unknownOfTypes{};  ///< by name of the module type
 };
 
 /// Reads and checks a recording without loading its pictures (frame files must exist). Every defect that
@@ -56,8 +63,10 @@ struct Recording {
 [[nodiscard]] tl::expected<void, FileError> writeFrame(const std::filesystem::path& directory, const std::string& file,
                                                        const cv::Mat& picture);
 
-/// SHA-256 of recording.json, of the gravity and detections files that it names and of each frame, by path in the
-/// recording.
+/// recording.json, the gravity and detections files that it names and each frame, as paths in the recording.
+[[nodiscard]] std::vector<std::string> filesOf(const Recording& recording);
+
+/// SHA-256 of each of filesOf.
 [[nodiscard]] tl::expected<std::map<std::string, std::string>, FileError> digestRecording(
     const std::filesystem::path& directory, const Recording& recording);
 

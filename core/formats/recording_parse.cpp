@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <unordered_map>
 #include <unordered_set>
@@ -61,7 +63,15 @@ int readPort(const JsonCursor& cursor, ModuleId id, const Skin& skin, const Modu
     return static_cast<int>(port);
 }
 
+/// A link is one connection, whichever end reports it.
+using Ends = std::pair<std::pair<ModuleId, int>, std::pair<ModuleId, int>>;
+
+Ends endsOf(const Link& link) {
+    return std::minmax(std::pair(link.a, link.a_port), std::pair(link.b, link.b_port));
+}
+
 void readLinks(const JsonCursor& root, Skin& skin, const ModuleIndex& index) {
+    std::map<Ends, LinkKind> kinds;
     for (const JsonCursor& item : root.at("links").array(kMaxLinks)) {
         Link link;
         link.a = readModule(item.at("a"), index);
@@ -73,6 +83,11 @@ void readLinks(const JsonCursor& root, Skin& skin, const ModuleIndex& index) {
             if (kind != "adjacent" && kind != "cable")
                 item.at("kind").fail(fmt::format("expected \"adjacent\" or \"cable\", found \"{}\"", kind));
             link.decided = kind == "adjacent" ? LinkKind::Adjacent : LinkKind::Cable;
+            if (kinds.emplace(endsOf(link), *link.decided).first->second != *link.decided)
+                item.at("kind").fail(
+                    fmt::format("expected one kind for each link, found \"{}\" where the same link is "
+                                "said to be the other above",
+                                kind));
         }
         skin.links.push_back(link);
     }
@@ -150,6 +165,7 @@ void readDecisions(const JsonCursor& root, Recording& recording, const ModuleInd
     std::set<std::string> names;
     for (const RecordedView& view : recording.views)
         names.insert(view.name);
+    std::map<std::pair<std::string, ModuleId>, std::string> verdicts;
     for (const JsonCursor& item : root.at("decisions").array(kMaxLinks)) {
         Decision decision;
         decision.view = item.at("view").text();
@@ -160,15 +176,25 @@ void readDecisions(const JsonCursor& root, Recording& recording, const ModuleInd
         if (decision.verdict != "accepted" && decision.verdict != "rejected")
             item.at("verdict").fail(
                 fmt::format("expected \"accepted\" or \"rejected\", found \"{}\"", decision.verdict));
+        const auto& first = verdicts.emplace(std::pair(decision.view, decision.module), decision.verdict).first->second;
+        if (first != decision.verdict)
+            item.at("verdict").fail(
+                fmt::format("expected one verdict for each view and module, module {} in '{}' is "
+                            "\"{}\" above and \"{}\" here",
+                            decision.module.value, decision.view, first, decision.verdict));
         if (item.holds("reason"))
             decision.reason = item.at("reason").text();
         recording.decisions.push_back(std::move(decision));
     }
 }
 
+constexpr std::array<std::string_view, 11> kKeys{"format", "version",    "module_types", "modules",
+                                                 "links",  "host_links", "gravity",      "camera",
+                                                 "views",  "detections", "decisions"};
+
 }  // namespace
 
-tl::expected<ParsedRecording, FileError> parseRecordingJson(std::string_view text, const std::filesystem::path& file) {
+tl::expected<Recording, FileError> parseRecordingJson(std::string_view text, const std::filesystem::path& file) {
     try {
         const nlohmann::json json = parseJson(text, file);
         const JsonCursor root(json, file);
@@ -179,19 +205,25 @@ tl::expected<ParsedRecording, FileError> parseRecordingJson(std::string_view tex
         if (version > 1)
             root.at("version").fail(fmt::format(
                 "expected version 1, found {}: this recording was written by a newer version of the program", version));
-        ParsedRecording parsed;
-        Recording& recording = parsed.recording;
+        Recording recording;
         readTemplates(root, recording.skin);
+        for (const JsonCursor& type : root.at("module_types").array(kMaxTemplates)) {
+            if (auto unknown = unknownTemplateKeys(type); !unknown.empty())
+                recording.unknownOfTypes[type.at("name").text()] = std::move(unknown);
+        }
+        recording.unknown = root.membersBut(kKeys);
         const ModuleIndex index = readModules(root, recording.skin);
         readLinks(root, recording.skin, index);
         recording.camera = readCamera(root.at("camera"));
         readViews(root, recording, index);
         readDecisions(root, recording, index);
-        if (root.holds("gravity"))
-            parsed.gravityFile = root.at("gravity").text();
-        if (root.holds("detections"))
-            parsed.detectionsFile = root.at("detections").text();
-        return parsed;
+        recording.gravityFile = root.at("gravity").text();
+        if (root.holds("detections")) {
+            recording.detectionsFile = root.at("detections").text();
+            if (recording.detectionsFile.empty())
+                root.at("detections").fail("expected a path inside the recording, found ''");
+        }
+        return recording;
     } catch (const FileErrorException& exception) {
         return tl::unexpected(exception.error);
     }

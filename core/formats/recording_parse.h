@@ -3,7 +3,6 @@
 /// The reader of a recording taken apart, for tests and fuzzing: text in, values out, no file system.
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -20,7 +19,11 @@ inline constexpr std::size_t kMaxPorts = 64;
 inline constexpr std::size_t kMaxViews = 100'000;
 inline constexpr std::size_t kMaxFramesPerView = 1'000'000;
 inline constexpr long kMaxImageSide = 16'384;
-inline constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 30U;
+inline constexpr double kMaxImagePixels = 64e6;
+/// Focal lengths outside of these shares of the picture's width are refused: no lens has them, a wrong unit has.
+inline constexpr double kMinFocalShare = 0.05;
+inline constexpr double kMaxFocalShare = 50;
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{128} << 20U;
 inline constexpr std::size_t kMaxCsvBytes = std::size_t{4} << 30U;
 inline constexpr std::size_t kMaxImageBytes = std::size_t{256} << 20U;
 
@@ -28,14 +31,9 @@ inline constexpr std::size_t kMaxImageBytes = std::size_t{256} << 20U;
 inline constexpr double kMinSigma = 1e-6;
 inline constexpr double kMaxSigma = 1e6;
 
-struct ParsedRecording {
-    Recording recording;  ///< without gravity and detections
-    std::optional<std::string> gravityFile;
-    std::optional<std::string> detectionsFile;
-};
-
-[[nodiscard]] tl::expected<ParsedRecording, FileError> parseRecordingJson(std::string_view text,
-                                                                          const std::filesystem::path& file);
+/// Everything but gravity and detections, whose files it names.
+[[nodiscard]] tl::expected<Recording, FileError> parseRecordingJson(std::string_view text,
+                                                                    const std::filesystem::path& file);
 
 /// Fills recording.gravity.
 [[nodiscard]] tl::expected<void, FileError> parseGravityCsv(std::string_view text, const std::filesystem::path& file,

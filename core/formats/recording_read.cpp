@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "core/formats/files.h"
-#include "core/formats/image_header.h"
+#include "core/formats/picture_decode.h"
 #include "core/formats/recording.h"
 #include "core/formats/recording_parse.h"
 
@@ -28,8 +26,17 @@ tl::expected<void, FileError> checkFrames(const fs::path& directory, const Recor
                 return tl::unexpected(FileError{directory / "recording.json",
                                                 fmt::format("views[{}].frames[{}].file", v, f), path.error()});
             std::error_code error;
-            if (!fs::is_regular_file(*path, error))
-                return tl::unexpected(FileError{*path, "", "expected a picture, there is no such file"});
+            const fs::file_status status = fs::status(*path, error);
+            if (fs::is_regular_file(status))
+                continue;
+            const std::string& file = recording.views[v].frames[f].file;
+            std::string problem = fmt::format("expected a picture, there is no such file '{}'", file);
+            if (status.type() == fs::file_type::none)
+                problem = fmt::format("expected a readable file, '{}' is none: {}", file, error.message());
+            else if (fs::exists(status))
+                problem = fmt::format("expected a regular file, '{}' is none", file);
+            return tl::unexpected(FileError{directory / "recording.json",
+                                            fmt::format("views[{}].frames[{}].file", v, f), std::move(problem)});
         }
     }
     return {};
@@ -40,30 +47,30 @@ tl::expected<void, FileError> checkFrames(const fs::path& directory, const Recor
 tl::expected<Recording, FileError> readRecording(const fs::path& directory) {
     const fs::path jsonFile = directory / "recording.json";
     std::error_code error;
-    if (!fs::is_directory(directory, error))
+    const fs::file_status status = fs::status(directory, error);
+    if (status.type() == fs::file_type::none)
+        return tl::unexpected(FileError{directory, "", "expected a readable directory: " + error.message()});
+    if (!fs::is_directory(status))
         return tl::unexpected(FileError{directory, "", "expected a recording, a directory that holds recording.json"});
     const auto text = readFile(jsonFile, kMaxJsonBytes);
     if (!text)
         return tl::unexpected(text.error());
-    auto parsed = parseRecordingJson(*text, jsonFile);
-    if (!parsed)
-        return tl::unexpected(parsed.error());
-    Recording& recording = parsed->recording;
-    if (parsed->gravityFile) {
-        const auto csv = readMember(directory, *parsed->gravityFile, "gravity", kMaxCsvBytes);
+    auto recording = parseRecordingJson(*text, jsonFile);
+    if (!recording)
+        return recording;
+    const auto gravity = readMember(directory, recording->gravityFile, "gravity", kMaxCsvBytes);
+    if (!gravity)
+        return tl::unexpected(gravity.error());
+    if (const auto result = parseGravityCsv(*gravity, directory / recording->gravityFile, *recording); !result)
+        return tl::unexpected(result.error());
+    if (!recording->detectionsFile.empty()) {
+        const auto csv = readMember(directory, recording->detectionsFile, "detections", kMaxCsvBytes);
         if (!csv)
             return tl::unexpected(csv.error());
-        if (const auto result = parseGravityCsv(*csv, directory / *parsed->gravityFile, recording); !result)
+        if (const auto result = parseDetectionsCsv(*csv, directory / recording->detectionsFile, *recording); !result)
             return tl::unexpected(result.error());
     }
-    if (parsed->detectionsFile) {
-        const auto csv = readMember(directory, *parsed->detectionsFile, "detections", kMaxCsvBytes);
-        if (!csv)
-            return tl::unexpected(csv.error());
-        if (const auto result = parseDetectionsCsv(*csv, directory / *parsed->detectionsFile, recording); !result)
-            return tl::unexpected(result.error());
-    }
-    if (const auto result = checkFrames(directory, recording); !result)
+    if (const auto result = checkFrames(directory, *recording); !result)
         return tl::unexpected(result.error());
     return recording;
 }
@@ -83,50 +90,28 @@ tl::expected<cv::Mat, FileError> loadFrame(const fs::path& directory, const Fram
         return tl::unexpected(FileError{*path, "",
                                         fmt::format("expected a picture of the camera's size {}x{}, found {}x{}",
                                                     camera.width, camera.height, header->width, header->height)});
-    if (header->bitsPerSample != 8)
-        return tl::unexpected(
-            FileError{*path, "", fmt::format("expected 8 bits per channel, found {}", header->bitsPerSample)});
-    const FileError damaged{*path, "", "expected a picture that can be decoded, it is damaged"};
-    // The decoder fills what a cut-off JPEG lacks with grey and calls that a success. An end before the last scan is
-    // that of a thumbnail; within a scan's data neither marker occurs.
-    if (header->format == ImageFormat::Jpeg) {
-        const auto end = bytes->rfind("\xFF\xD9");
-        if (end == std::string::npos || end < bytes->rfind("\xFF\xDA"))
-            return tl::unexpected(damaged);
+    const auto picture = decodePicture(*bytes, *header);
+    if (!picture)
+        return tl::unexpected(FileError{*path, "", picture.error()});
+    return *picture;
+}
+
+std::vector<std::string> filesOf(const Recording& recording) {
+    std::vector<std::string> files{"recording.json", recording.gravityFile};
+    if (!recording.detectionsFile.empty())
+        files.push_back(recording.detectionsFile);
+    for (const RecordedView& view : recording.views) {
+        for (const FrameInfo& frame : view.frames)
+            files.push_back(frame.file);
     }
-    cv::Mat picture;
-    try {
-        const cv::Mat buffer(1, static_cast<int>(bytes->size()), CV_8UC1, const_cast<char*>(bytes->data()));
-        // Orientation tags would turn the picture under its calibration; an alpha channel means nothing here.
-        picture = cv::imdecode(buffer, cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION);
-    } catch (const cv::Exception&) {
-        picture.release();
-    }
-    if (picture.empty() || picture.cols != camera.width || picture.rows != camera.height)
-        return tl::unexpected(damaged);
-    return picture;
+    return files;
 }
 
 tl::expected<std::map<std::string, std::string>, FileError> digestRecording(const fs::path& directory,
                                                                             const Recording& recording) {
-    const auto text = readFile(directory / "recording.json", kMaxJsonBytes);
-    if (!text)
-        return tl::unexpected(text.error());
-    const auto parsed = parseRecordingJson(*text, directory / "recording.json");
-    if (!parsed)
-        return tl::unexpected(parsed.error());
-    std::map<std::string, std::string> digests{{"recording.json", sha256(*text)}};
-    std::vector<std::pair<std::string, std::string>> members;
-    if (parsed->gravityFile)
-        members.emplace_back("gravity", *parsed->gravityFile);
-    if (parsed->detectionsFile)
-        members.emplace_back("detections", *parsed->detectionsFile);
-    for (const RecordedView& view : recording.views) {
-        for (const FrameInfo& frame : view.frames)
-            members.emplace_back("views", frame.file);
-    }
-    for (const auto& [place, file] : members) {
-        const auto bytes = readMember(directory, file, place, kMaxCsvBytes);
+    std::map<std::string, std::string> digests;
+    for (const std::string& file : filesOf(recording)) {
+        const auto bytes = readMember(directory, file, "", kMaxCsvBytes);
         if (!bytes)
             return tl::unexpected(bytes.error());
         digests[file] = sha256(*bytes);

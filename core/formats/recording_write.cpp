@@ -32,13 +32,17 @@ Json frameToJson(const FrameInfo& frame) {
     return json;
 }
 
-Json skinToJson(const Skin& skin) {
+Json skinToJson(const Recording& recording) {
+    const Skin& skin = recording.skin;
     Json json;
     json["format"] = "skincal-recording";
     json["version"] = 1;
     json["module_types"] = Json::array();
-    for (const ModuleTemplate& type : skin.templates)
+    for (const ModuleTemplate& type : skin.templates) {
         json["module_types"].push_back(templateToJson(type));
+        if (const auto unknown = recording.unknownOfTypes.find(type.name); unknown != recording.unknownOfTypes.end())
+            addKeys(json["module_types"].back(), unknown->second);
+    }
     json["modules"] = Json::array();
     for (const SkinModule& module : skin.modules)
         json["modules"].push_back({{"id", module.id.value}, {"type", skin.templates[module.type].name}});
@@ -86,7 +90,7 @@ tl::expected<void, FileError> writeRecording(const Recording& recording, const f
     if (error)
         return tl::unexpected(FileError{directory, "", "can't make the directory: " + error.message()});
 
-    Json json = skinToJson(recording.skin);
+    Json json = skinToJson(recording);
     json["gravity"] = "gravity.csv";
     json["camera"] = cameraToJson(recording.camera);
     json["views"] = Json::array();
@@ -115,6 +119,8 @@ tl::expected<void, FileError> writeRecording(const Recording& recording, const f
             json["decisions"].push_back(
                 {{"view", d.view}, {"module", d.module.value}, {"verdict", d.verdict}, {"reason", d.reason}});
     }
+
+    addKeys(json, recording.unknown);
 
     // recording.json last: a directory without it is no recording, so a half-written one is never read.
     if (auto result = writeFileAtomically(directory / "gravity.csv", gravityToCsv(recording.gravity)); !result)

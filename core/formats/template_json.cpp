@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "core/formats/recording_parse.h"
 
 namespace skincal {
@@ -16,6 +18,17 @@ Vector3d readPosition(const JsonCursor& cursor) {
         cursor.fail(fmt::format("expected a position within {} m of the module's origin (metres, not millimetres)",
                                 kMaxModuleSize));
     return p;
+}
+
+/// m^2, positive where the corners run counter-clockwise.
+double signedArea(const std::vector<Vector2d>& outline) {
+    double twice = 0;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Vector2d& p = outline[i];
+        const Vector2d& q = outline[(i + 1) % outline.size()];
+        twice += p.x() * q.y() - p.y() * q.x();
+    }
+    return 0.5 * twice;
 }
 
 nlohmann::ordered_json toJson(const Vector3d& v) {
@@ -38,6 +51,11 @@ ModuleTemplate readTemplate(const JsonCursor& cursor) {
             point.fail(fmt::format("expected a point within {} m of the module's origin", kMaxModuleSize));
         type.outline.push_back(p);
     }
+    // Also of a board no larger than a grain of sand.
+    constexpr double kMinArea = 1e-9;
+    if (const double area = signedArea(type.outline); area < kMinArea)
+        cursor.at("outline").fail(area > -kMinArea ? "expected an outline that encloses an area"
+                                                   : "expected the outline counter-clockwise, it is clockwise");
     type.led = readPosition(cursor.at("led"));
     for (const JsonCursor& port : cursor.at("ports").array(kMaxPorts))
         type.ports.push_back(readPosition(port));
@@ -74,6 +92,17 @@ nlohmann::ordered_json templateToJson(const ModuleTemplate& type) {
     return json;
 }
 
+std::map<std::string, std::string> unknownTemplateKeys(const JsonCursor& cursor) {
+    static constexpr std::array<std::string_view, 6> kKeys{"name",  "outline",       "led",
+                                                           "ports", "accelerometer", "sensors"};
+    return cursor.membersBut(kKeys);
+}
+
+void addKeys(nlohmann::ordered_json& json, const std::map<std::string, std::string>& keys) {
+    for (const auto& [key, text] : keys)
+        json[key] = nlohmann::ordered_json::parse(text);
+}
+
 CameraModel readCamera(const JsonCursor& cursor) {
     CameraModel camera;
     const std::string model = cursor.at("model").text();
@@ -81,8 +110,11 @@ CameraModel readCamera(const JsonCursor& cursor) {
         cursor.at("model").fail(fmt::format("expected \"pinhole\", found \"{}\"", model));
     camera.width = static_cast<int>(cursor.at("width").integer(1, kMaxImageSide));
     camera.height = static_cast<int>(cursor.at("height").integer(1, kMaxImageSide));
-    camera.fx = cursor.at("fx").number(1, 1e6);
-    camera.fy = cursor.at("fy").number(1, 1e6);
+    if (static_cast<double>(camera.width) * camera.height > kMaxImagePixels)
+        cursor.at("height").fail(fmt::format("expected a picture of at most {:g} megapixels, found {}x{}",
+                                             kMaxImagePixels / 1e6, camera.width, camera.height));
+    camera.fx = cursor.at("fx").number(kMinFocalShare * camera.width, kMaxFocalShare * camera.width);
+    camera.fy = cursor.at("fy").number(kMinFocalShare * camera.width, kMaxFocalShare * camera.width);
     camera.cx = cursor.at("cx").number(-1e5, 1e5);
     camera.cy = cursor.at("cy").number(-1e5, 1e5);
     const JsonCursor nameCursor = cursor.at("distortion_model");

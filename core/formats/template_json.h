@@ -12,6 +12,10 @@ namespace skincal {
 [[nodiscard]] ModuleTemplate readTemplate(const JsonCursor& cursor);
 [[nodiscard]] nlohmann::ordered_json templateToJson(const ModuleTemplate& type);
 
+/// Keys that the page does not name, with their JSON text; and back.
+[[nodiscard]] std::map<std::string, std::string> unknownTemplateKeys(const JsonCursor& cursor);
+void addKeys(nlohmann::ordered_json& json, const std::map<std::string, std::string>& keys);
+
 [[nodiscard]] CameraModel readCamera(const JsonCursor& cursor);
 [[nodiscard]] nlohmann::ordered_json cameraToJson(const CameraModel& camera);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <unordered_set>
+
 #include "core/formats/files.h"
 #include "core/formats/json_cursor.h"
 #include "core/formats/recording_parse.h"
@@ -18,7 +20,7 @@ Isometry3d readPose(const JsonCursor& cursor) {
         cursor.at("R").fail(fmt::format("expected 3 rows, found {}", rows.size()));
     for (Eigen::Index i = 0; i < 3; ++i)
         T.linear().row(i) = rows[static_cast<std::size_t>(i)].vector3().transpose();
-    T.translation() = cursor.at("t").vector3();
+    T.translation() = cursor.at("t").translation();
     if (!isRigid(T, 1e-4))
         cursor.at("R").fail("expected a rotation matrix");
     return T;
@@ -38,9 +40,12 @@ tl::expected<Truth, FileError> parseTruthJson(std::string_view text, const std::
         const nlohmann::json json = parseJson(text, file);
         const JsonCursor root(json, file);
         Truth truth;
+        std::unordered_set<ModuleId> ids;
         for (const JsonCursor& item : root.at("modules").array(kMaxModules)) {
             TrueModule module;
             module.id = ModuleId(static_cast<std::uint32_t>(item.at("id").integer(1, 0xFFFFFFFFLL)));
+            if (!ids.insert(module.id).second)
+                item.at("id").fail(fmt::format("expected an id of its own, {} is taken", module.id.value));
             module.patch = item.holds("patch") ? static_cast<int>(item.at("patch").integer(0, 1'000'000)) : 0;
             module.T_body_module = readPose(item);
             truth.modules.push_back(module);

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/formats/body_json.h"
-#include "core/formats/image_header.h"
+#include "core/formats/picture_decode.h"
 #include "core/formats/recording_parse.h"
 #include "core/formats/truth_json.h"
 
@@ -37,6 +37,18 @@ inline void checkRoundTrip(const BodyModel& body) {
         throw std::logic_error("a body that does not survive being written");
 }
 
+/// A small picture is decoded, too.
+inline void checkPicture(std::string_view bytes) {
+    const auto header = parseImageHeader(bytes);
+    if (!header && header.error().empty())
+        throw std::logic_error("an error without words");
+    if (!header || header->width > 256 || header->height > 256)
+        return;
+    const auto picture = decodePicture(bytes, *header);
+    if (picture ? picture->cols != header->width || picture->rows != header->height : picture.error().empty())
+        throw std::logic_error("a picture of another size, or an error without words");
+}
+
 /// Feeds bytes to one of the readers; the first byte says which. Whatever it holds, they return; an answer that breaks
 /// their promises throws.
 inline void readAnything(std::string_view bytes) {
@@ -58,8 +70,7 @@ inline void readAnything(std::string_view bytes) {
                 check(result.error());
             break;
         case 3:
-            if (const auto result = parseImageHeader(text); !result && result.error().empty())
-                throw std::logic_error("an error without words");
+            checkPicture(text);
             break;
         case 4: {
             const auto result = parseBodyJson(text, "a.body.json");

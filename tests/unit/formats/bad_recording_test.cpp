@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -142,6 +143,12 @@ std::string withThumbnail(const std::string& jpeg, const std::string& thumbnail)
     return jpeg.substr(0, 2) + head + thumbnail + jpeg.substr(2);
 }
 
+void flip(const std::filesystem::path& file, std::size_t byte) {
+    std::string bytes = test::readText(file);
+    bytes.at(byte) = static_cast<char>(bytes.at(byte) ^ 1);
+    writeText(file, bytes);
+}
+
 std::vector<Defect> defects() {
     std::vector<Defect> all{
         inJson(
@@ -186,6 +193,39 @@ std::vector<Defect> defects() {
             },
             "module_types[0].led", "millimetres"),
         inJson(
+            "clockwise",
+            [](json& j) {
+                j["module_types"][0]["outline"] = {{0.015, 0}, {-0.015, 0}, {0, 0.015}};
+            },
+            "module_types[0].outline", "counter-clockwise, it is clockwise"),
+        inJson(
+            "no_area",
+            [](json& j) {
+                j["module_types"][0]["outline"] = {{0.015, 0}, {-0.015, 0}, {0, 0}};
+            },
+            "module_types[0].outline", "encloses an area"),
+        inJson(
+            "two_kinds_of_one_link",
+            [](json& j) {
+                j["links"] = {{{"a", 17}, {"a_port", 0}, {"b", 23}, {"b_port", 1}, {"kind", "cable"}},
+                              {{"a", 23}, {"a_port", 1}, {"b", 17}, {"b_port", 0}, {"kind", "adjacent"}}};
+            },
+            "links[1].kind", "one kind for each link"),
+        inJson(
+            "two_verdicts",
+            [](json& j) {
+                j["decisions"].push_back({{"view", "view0"}, {"module", 17}, {"verdict", "accepted"}});
+            },
+            "decisions[1].verdict", "one verdict for each view and module"),
+        inJson(
+            "no_gravity_key", [](json& j) { j.erase("gravity"); }, "", "expected a key 'gravity'"),
+        inJson(
+            "no_frame", [](json& j) { j["views"][0]["frames"][0]["file"] = "views/1.png"; }, "views[0].frames[0].file",
+            "no such file 'views/1.png'"),
+        inJson(
+            "frame_is_a_directory", [](json& j) { j["views"][0]["frames"][0]["file"] = "views"; },
+            "views[0].frames[0].file", "expected a regular file, 'views' is none"),
+        inJson(
             "two_coordinates",
             [](json& j) {
                 j["module_types"][0]["led"] = {0, 0};
@@ -197,7 +237,18 @@ std::vector<Defect> defects() {
         inJson(
             "absurd_width", [](json& j) { j["camera"]["width"] = 1000000; }, "camera.width", "from 1 to 16384"),
         inJson(
-            "no_focal_length", [](json& j) { j["camera"]["fx"] = 0; }, "camera.fx", "expected a number from 1"),
+            "no_focal_length", [](json& j) { j["camera"]["fx"] = 0; }, "camera.fx",
+            "expected a number from 3.2 to 3200"),
+        inJson(
+            "focal_length_of_another_unit", [](json& j) { j["camera"]["fy"] = 60000; }, "camera.fy",
+            "from 3.2 to 3200"),
+        inJson(
+            "too_many_pixels",
+            [](json& j) {
+                j["camera"]["width"] = 10000;
+                j["camera"]["height"] = 6401;
+            },
+            "camera.height", "at most 64 megapixels, found 10000x6401"),
         inJson(
             "camera_model", [](json& j) { j["camera"]["model"] = "omni"; }, "camera.model", "\"omni\""),
         inJson(
@@ -277,7 +328,19 @@ std::vector<Defect> defects() {
          "expected a picture of the camera's size 64x48, found 65x48"},
         {"frame_16_bit", [](Files& f) { f.picture = cv::Mat::zeros(48, 64, CV_16UC1); }, "0.png", "", "8 bits"},
         {"frame_missing", [](Files& f) { f.then = [](const auto& d) { std::filesystem::remove(d / "views/0.png"); }; },
-         "0.png", "", "no such file"},
+         "recording.json", "views[0].frames[0].file", "no such file 'views/0.png'"},
+        {"frame_is_a_pipe",
+         [](Files& f) {
+             f.then = [](const auto& d) {
+                 std::filesystem::remove(d / "views/0.png");
+                 ::mkfifo((d / "views/0.png").c_str(), 0600);
+             };
+         },
+         "recording.json", "views[0].frames[0].file", "expected a regular file"},
+        {"frame_with_a_flipped_bit", [](Files& f) { f.then = [](const auto& d) { flip(d / "views/0.png", 50); }; },
+         "0.png", "", "damaged"},
+        {"key_twice", [](Files& f) { f.text = R"({"format": "skincal-recording", "x": {"a": 1, "b": {}, "a": 2}})"; },
+         "recording.json", "", "each key of an object once, 'a' is there twice"},
         {"frame_is_text", [](Files& f) { f.then = [](const auto& d) { writeText(d / "views/0.png", "hello"); }; },
          "0.png", "", "PNG or JPEG"},
         {"frame_is_cut_off",
@@ -311,7 +374,7 @@ std::vector<Defect> defects() {
                  std::filesystem::create_symlink("/etc/passwd", d / "views/0.png");
              };
          },
-         "recording.json", "views[0].frames[0].file", "inside the recording"},
+         "recording.json", "views[0].frames[0].file", "a symbolic link in 'views/0.png' leads out"},
     };
     Defect sigma{"gravity_sigma",
                  [](Files& f) { f.gravity = "pose,module,ax,ay,az,sigma,samples\n0,17,0,0,9.8,-1,5\n"; }, "gravity.csv",
@@ -337,6 +400,23 @@ TEST(BadRecordingDirectory, MissingOrAFileOrEmpty) {
     EXPECT_THAT(readRecording(directory.path()).error().problem, testing::HasSubstr("there is none"));
     writeText(directory / "file", "x");
     EXPECT_FALSE(readRecording(directory / "file"));
+}
+
+TEST(BadRecordingDirectory, SaysWhyItCanNotBeRead) {
+    const TemporaryDirectory directory;
+    std::filesystem::create_symlink(directory / "loop", directory / "loop");
+    EXPECT_THAT(readRecording(directory / "loop").error().problem, testing::HasSubstr("symbolic links"));
+}
+
+TEST(Recording, GravityMayBeEmptyAndALinkMayLeadToItsOwnModule) {
+    const TemporaryDirectory directory;
+    Files files;
+    files.gravity = "pose,module,ax,ay,az\n";
+    files.recording["links"].push_back({{"a", 17}, {"a_port", 0}, {"b", 17}, {"b_port", 1}});
+    write(files, directory);
+    const auto recording = readRecording(directory.path());
+    ASSERT_TRUE(recording) << recording.error().message();
+    EXPECT_TRUE(recording->gravity.empty());
 }
 
 TEST(Recording, AJpegWithAThumbnailIsReadWhole) {

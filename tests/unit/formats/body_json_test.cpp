@@ -75,6 +75,27 @@ TEST(BodyJson, BadFilesGiveTheirPlace) {
     EXPECT_EQ(placeOf([](auto&) {}), "no error");
 }
 
+TEST(BodyJson, NeedsOnlyWhatThePageNames) {
+    auto json = nlohmann::json::parse(bodyToJson(test::randomBody(2)));
+    json["generator"] = nlohmann::json::object();
+    json["quality"] = nlohmann::json::object();
+    for (auto& link : json["links"])
+        link.erase("reason");
+    const auto body = parseBodyJson(json.dump(), "x.body.json");
+    ASSERT_TRUE(body) << body.error().message();
+    EXPECT_EQ(body->quality.modulesTotal, 6U);
+}
+
+TEST(BodyJson, CountsPlacedModulesItself) {
+    auto json = nlohmann::json::parse(bodyToJson(test::randomBody(2)));
+    json["quality"]["modules_placed"] = 100;
+    json["quality"]["modules_total"] = 100;
+    const auto body = parseBodyJson(json.dump(), "x.body.json");
+    ASSERT_TRUE(body) << body.error().message();
+    EXPECT_EQ(body->quality.modulesPlaced, 5U);
+    EXPECT_EQ(body->quality.modulesTotal, 6U);
+}
+
 TEST(BodyJson, FilesAreReadAndWritten) {
     const test::TemporaryDirectory directory;
     ASSERT_TRUE(writeBody(test::randomBody(3), directory / "a.body.json"));

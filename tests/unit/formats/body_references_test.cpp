@@ -67,6 +67,11 @@ INSTANTIATE_TEST_SUITE_P(
                 {0, 0, 1},
                 "modules[2].T_body_module.quaternion_xyzw",
                 "4 numbers, found 3"},
+        BadBody{"FarAway",
+                "/modules/2/T_body_module/translation",
+                {0, 0, -1001},
+                "modules[2].T_body_module.translation",
+                "within 1000 m"},
         BadBody{"OptionIsANumber", "/generator/options/method", 7, "generator.options.method", "a string, found 7"}),
     [](const testing::TestParamInfo<BadBody>& bad) { return bad.param.name; });
 

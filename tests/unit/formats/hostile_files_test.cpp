@@ -10,7 +10,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/formats/files.h"
-#include "core/formats/image_header.h"
+#include "core/formats/json_cursor.h"
+#include "core/formats/picture_decode.h"
 #include "core/formats/recording_parse.h"
 #include "core/formats/truth_json.h"
 #include "core/geometry/random.h"
@@ -151,9 +152,77 @@ TEST(Frames, AJpegIsReadWholeOrNotAtAll) {
     }
 }
 
+TEST(Frames, DamageOfAnyKindIsSaidOnceAndByUs) {
+    // Libraries print their own complaints, or none and make something up.
+    const TemporaryDirectory directory;
+    CameraModel camera;
+    camera.width = 32;
+    camera.height = 24;
+    cv::Mat image(camera.height, camera.width, CV_8UC3);
+    cv::RNG(3).fill(image, cv::RNG::UNIFORM, 0, 256);
+    const std::string png = encoded(image, ".png");
+    const std::string jpeg = encoded(image, ".jpg");
+    const std::string extraHeader = png.substr(0, 33) + png.substr(8, 25) + png.substr(33);
+    const auto scan = jpeg.find("\xFF\xDA");
+    for (const std::string& bytes : {
+             png.substr(0, png.size() - 12),                                        // no IEND
+             png.substr(0, 33) + png.substr(png.size() - 12),                       // no IDAT
+             png.substr(0, png.size() / 2) + "x" + png.substr(png.size() / 2 + 1),  // checksum
+             png.substr(0, 33) + "\x7F\xFF\xFF\xFF" + png.substr(37),               // length
+             extraHeader,                                                           // IHDR twice
+             jpeg.substr(0, jpeg.size() / 2) + "\xFF\xD9",                          // cut off, and closed again
+             jpeg.substr(0, scan + 100) + std::string(200, '\x7F') + "\xFF\xD0" + jpeg.substr(scan + 300),
+             jpeg.substr(0, jpeg.size() - 2),  // no end
+         }) {
+        writeText(directory / "a", bytes);
+        testing::internal::CaptureStderr();
+        const auto frame = loadFrame(directory.path(), {"a", {}, {}}, camera);
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+        ASSERT_FALSE(frame);
+        EXPECT_THAT(frame.error().problem, testing::HasSubstr("damaged"));
+    }
+}
+
+TEST(Frames, AreDecodedAsTheEncoderMadeThem) {
+    Random random(1, "Frames");
+    for (int i = 0; i < 20; ++i) {
+        const cv::Size size(static_cast<int>(1 + random.index(90)), static_cast<int>(1 + random.index(90)));
+        for (const int channels : {1, 3, 4}) {
+            cv::Mat image(size, CV_8UC(channels));
+            cv::RNG(static_cast<std::uint64_t>(i)).fill(image, cv::RNG::UNIFORM, 0, 256);
+            for (const char* kind : {".png", ".jpg"}) {
+                const std::string bytes = encoded(image, kind);
+                const auto picture = decodePicture(bytes, *parseImageHeader(bytes));
+                ASSERT_TRUE(picture) << picture.error();
+                const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+                const cv::Mat expected = cv::imdecode(raw, cv::IMREAD_ANYCOLOR);
+                ASSERT_EQ(picture->type(), expected.type());
+                EXPECT_EQ(cv::norm(*picture, expected, cv::NORM_INF), 0) << kind << channels;
+            }
+        }
+    }
+}
+
+TEST(Json, MemoryAndKeysAreLimited) {
+    std::string many = "{\"x\": [[]";
+    for (std::size_t i = 0; i < kMaxJsonValues; ++i)
+        many += ",[]";
+    const auto refused = parseRecordingJson(many + "]}", "r.json");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message(), testing::HasSubstr("expected at most 10000000 values"));
+    const auto twice = parseTruthJson(R"({"modules": [], "views": [{"b\n": 1, "b\n": 2}]})", "t.json");
+    EXPECT_EQ(twice.error().message(), "t.json: expected each key of an object once, 'b ' is there twice");
+    EXPECT_TRUE(parseTruthJson(R"({"modules": [], "x": [{"b": 1}, {"b": {"b": 2}}]})", "t.json"));
+}
+
 TEST(FileErrorMessage, IsOneLineThatATerminalCanShow) {
     const FileError hostile{"a.json", "modules[0]", "found '\x1B[2J\nhex'"};
     EXPECT_EQ(hostile.message(), "a.json: modules[0]: found ' [2J hex'");
+    EXPECT_EQ(printable("a\xC2\x9B"
+                        "2Jü\x7F"),
+              "a 2Jü ")
+        << "an escape sequence of eight bits";
+    EXPECT_EQ((FileError{"a\n.json", "", "x"}).message(), "a .json: x");
     std::string endless;
     for (int i = 0; i < 1000; ++i)
         endless += "ü";
@@ -197,6 +266,9 @@ TEST(Truth, DefectsAreNamed) {
              std::tuple(module("\"t\": [0,0,0]}"), "modules[0]", "a key 'R'"),
              std::tuple(module("\"R\": [[1,0,0]], \"t\": [0,0,0]}"), "modules[0].R", "3 rows, found 1"),
              std::tuple(module("\"R\": [[1,0,0],[0,1,0],[0,0,-1]], \"t\": [0,0,0]}"), "modules[0].R", "a rotation"),
+             std::tuple("{\"modules\": [{\"id\": 1, " + pose + ", {\"id\": 1, " + pose + "]}", "modules[1].id",
+                        "1 is taken"),
+             std::tuple(module("\"R\": [[1,0,0],[0,1,0],[0,0,1]], \"t\": [0,2e3,0]}"), "modules[0].t", "within 1000 m"),
              std::tuple("{\"modules\": [], \"pixels\": [[\"v\", 1, 2]]}"s, "pixels[0]", "found 3 entries"),
              std::tuple("{\"modules\": [], \"views\": [{\"name\": 3}]}"s, "views[0].name", "a string"),
          }) {

@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
-#include "core/formats/recording.h"
+#include "core/formats/body_json.h"
 #include "core/formats/truth_json.h"
 #include "core/geometry/random.h"
 #include "tests/unit/formats/temporary_directory.h"
@@ -85,6 +86,26 @@ TEST(RecordingRoundTrip, KeepsEverythingToTheLastBit) {
         ASSERT_TRUE(digests);
         EXPECT_EQ(digests->size(), 5U);
     }
+}
+
+TEST(RecordingRoundTrip, KeepsWhatItDoesNotKnow) {
+    const test::TemporaryDirectory directory;
+    Recording a = randomRecording(1);
+    a.views.erase(a.views.begin());  // pictures
+    ASSERT_TRUE(writeRecording(a, directory / "a"));
+    auto json = nlohmann::json::parse(test::readText(directory / "a/recording.json"));
+    json["operator"] = {{"name", "K\u00e4the"}, {"shift", 2}};
+    json["module_types"][1]["vendor_mass"] = 0.25;
+    test::writeText(directory / "a/recording.json", json.dump());
+    const auto read = readRecording(directory / "a");
+    ASSERT_TRUE(read) << read.error().message();
+    ASSERT_TRUE(writeRecording(*read, directory / "b"));
+    EXPECT_EQ(nlohmann::json::parse(test::readText(directory / "b/recording.json")), json);
+
+    BodyModel body;
+    body.templates = read->skin.templates;
+    const auto written = nlohmann::json::parse(bodyToJson(body, read->unknownOfTypes));
+    EXPECT_EQ(written["module_types"], json["module_types"]);
 }
 
 TEST(RecordingRoundTrip, DoesNotOverwriteUnasked) {

@@ -13,7 +13,7 @@ tl::expected<FramePixels, std::string> FramePixels::make(cv::Mat picture, const 
     if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3))
         return tl::unexpected(file + ": expected an 8-bit grey or colour picture");
     if (expected.area() > 0 && picture.size() != expected)
-        return tl::unexpected(fmt::format("{}: expected {} x {} pixels as in the view's first frame, found {} x {}",
+        return tl::unexpected(fmt::format("{}: expected {} x {} pixels as in the view's other frames, found {} x {}",
                                           file, expected.width, expected.height, picture.cols, picture.rows));
     if (coloured && picture.channels() != 3)
         return tl::unexpected(file + ": a grey picture of LEDs that were lit in colours");

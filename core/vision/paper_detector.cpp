@@ -5,55 +5,60 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
+#include "core/vision/decoder.h"
+#include "core/vision/frame_pixels.h"
+#include "core/vision/paper_frames.h"
+
 namespace skincal {
 namespace {
 
-/// A frame with the background that is nearest in the order in which they were taken.
-struct FramePair {
-    std::size_t foreground = 0;
-    std::size_t background = 0;
-};
+/// Pixel, or why there is none.
+using Outcome = tl::expected<Vector2d, std::string>;
 
-std::optional<std::size_t> nearestBackground(std::span<const FrameInfo> frames, std::size_t k) {
-    for (std::size_t distance = 1; distance < frames.size(); ++distance) {
-        if (k >= distance && frames[k - distance].lit.empty())
-            return k - distance;
-        if (k + distance < frames.size() && frames[k + distance].lit.empty())
-            return k + distance;
-    }
-    return std::nullopt;
-}
-
-bool isColoured(const FrameInfo& frame) {
-    return !frame.lit.empty() &&
-           std::all_of(frame.lit.begin(), frame.lit.end(), [](const LitModule& lit) { return lit.colour.has_value(); });
-}
-
-cv::Mat blurredDifference(const cv::Mat& foreground, const cv::Mat& background, const PaperDetectorOptions& options) {
+cv::Mat blurred(const cv::Mat& foreground, const cv::Mat& background, const PaperDetectorOptions& options) {
     cv::Mat difference;
-    cv::subtract(toGrey(foreground), toGrey(background), difference);  // saturates at 0 (eq. 11a)
-    cv::Mat blurred;
-    cv::GaussianBlur(difference, blurred, cv::Size(options.blurSize, options.blurSize), options.blurSigma);
-    return blurred;
+    cv::subtract(foreground, background, difference);  // saturates at 0 (eq. 11a)
+    cv::GaussianBlur(difference, difference, cv::Size(options.blurSize, options.blurSize), options.blurSigma);
+    return difference;
 }
 
-cv::Mat binary(const cv::Mat& blurred, const PaperDetectorOptions& options) {
+cv::Mat brightestChannel(const cv::Mat& picture) {
+    std::vector<cv::Mat> channels;
+    cv::split(picture, channels);
+    cv::Mat top = channels[0];
+    for (const cv::Mat& channel : channels)
+        cv::max(top, channel, top);
+    return top;
+}
+
+cv::Mat binary(const cv::Mat& difference, const PaperDetectorOptions& options) {
     double top = 0;
-    cv::minMaxLoc(blurred, nullptr, &top);
+    cv::minMaxLoc(difference, nullptr, &top);
     cv::Mat result;
-    cv::threshold(blurred, result, std::max(top * options.thresholdShare, options.minThreshold), 255,
+    cv::threshold(difference, result, std::max(top * options.thresholdShare, options.minThreshold), 255,
                   cv::THRESH_BINARY);
     return result;
 }
 
-std::vector<cv::KeyPoint> blobs(const cv::Mat& picture, const PaperDetectorOptions& options) {
+/// Multiplies binary pictures (eq. 12).
+void multiply(cv::Mat& overlay, const cv::Mat& picture) {
+    if (overlay.empty())
+        overlay = picture;
+    else
+        cv::bitwise_and(overlay, picture, overlay);
+}
+
+/// Largest first.
+std::vector<cv::KeyPoint> blobs(const cv::Mat& overlay, const PaperDetectorOptions& options) {
     cv::SimpleBlobDetector::Params params;
+    // Of a binary picture every threshold says the same; two are the fewest that the detector steps through.
     params.minThreshold = 100;
     params.maxThreshold = 200;
     params.thresholdStep = 50;
@@ -66,131 +71,159 @@ std::vector<cv::KeyPoint> blobs(const cv::Mat& picture, const PaperDetectorOptio
     params.maxArea = options.maxArea;
     params.filterByCircularity = params.filterByConvexity = params.filterByInertia = false;
     std::vector<cv::KeyPoint> keypoints;
-    cv::SimpleBlobDetector::create(params)->detect(picture, keypoints);
+    cv::SimpleBlobDetector::create(params)->detect(overlay, keypoints);
+    std::stable_sort(keypoints.begin(), keypoints.end(),
+                     [](const cv::KeyPoint& a, const cv::KeyPoint& b) { return a.size > b.size; });
     return keypoints;
+}
+
+Outcome onlyBlob(const std::vector<cv::KeyPoint>& found, const PaperDetectorOptions& options, std::string_view which) {
+    if (found.empty())
+        return tl::unexpected(fmt::format("no blob{}", which));
+    if (found.size() > options.maxBlobs)
+        return tl::unexpected(fmt::format("{} blobs{} instead of one", found.size(), which));
+    return Vector2d(static_cast<double>(found[0].pt.x), static_cast<double>(found[0].pt.y));
 }
 
 double hueOf(double r, double g, double b) {
     return std::atan2(std::sqrt(3.0) * (g - b), 2 * r - g - b);
 }
 
-/// Which of the lit colours a spot has: the nearest hue, white where there is hardly any.
-std::size_t nearestColour(const cv::Vec3d& bgr, const std::vector<LitModule>& lit, double minSaturation) {
-    const double top = std::max({bgr[0], bgr[1], bgr[2], 1e-6});
-    const double low = std::min({bgr[0], bgr[1], bgr[2]});
-    const bool grey = (top - low) / top < minSaturation;
-    std::size_t best = 0;
-    double bestDistance = 1e9;
+/// Position in `lit` of the LED whose colour a spot has, if it has that of any.
+std::optional<std::size_t> ledOfColour(const cv::Vec3f& bgr, const std::vector<LitModule>& lit,
+                                       const PaperDetectorOptions& options) {
+    const auto b = static_cast<double>(bgr[0]);
+    const auto g = static_cast<double>(bgr[1]);
+    const auto r = static_cast<double>(bgr[2]);
+    const double top = std::max({r, g, b});
+    const bool white = top - std::min({r, g, b}) < options.minSaturation * top;
+    std::optional<std::size_t> best;
+    double least = options.maxHueError;
     for (std::size_t i = 0; i < lit.size(); ++i) {
-        const auto& c = *lit[i].colour;
-        const bool white = c[0] == c[1] && c[1] == c[2];
-        double distance = 10;
-        if (white != grey)
-            distance = 5;
-        else if (white)
-            distance = 0;
-        else
-            distance = std::abs(
-                std::remainder(hueOf(c[0], c[1], c[2]) - hueOf(bgr[2], bgr[1], bgr[0]), 2 * 3.14159265358979323846));
-        if (distance < bestDistance) {
-            bestDistance = distance;
+        const auto colour = colourOf(lit[i]);
+        if (isWhite(colour) != white)
+            continue;
+        if (white)
+            return i;
+        const double error =
+            std::abs(std::remainder(hueOf(colour[0], colour[1], colour[2]) - hueOf(r, g, b), 2 * std::numbers::pi));
+        if (error <= least) {
+            least = error;
             best = i;
         }
     }
     return best;
 }
 
-struct Outcome {
-    std::optional<Vector2d> pixel;
-    std::string reason = "lit only together with others: the paper's detector needs it alone in a frame";
-};
-
 class Detector {
   public:
     Detector(std::span<const FrameInfo> frames, const FrameLoader& load, const PaperDetectorOptions& options)
         : frames_(frames), load_(load), options_(options) {}
 
-    tl::expected<Outcome, ScanError> alone(const std::vector<FramePair>& pairs) {
+    /// One outcome per lit module of the group, in its order.
+    tl::expected<std::vector<Outcome>, ScanError> detect(const PaperGroup& group) {
+        std::vector<FramePair> pairs = group.pairs;
+        if (pairs.size() > static_cast<std::size_t>(options_.binaryImages))
+            pairs.resize(static_cast<std::size_t>(options_.binaryImages));
+        const auto none = [&](const char* why) {
+            return std::vector<Outcome>(group.lit.size(), tl::unexpected(std::string(why)));
+        };
+        if (pairs.empty())
+            return none("the view has no background frame");
         cv::Mat overlay;
+        cv::Mat colour;
         for (const FramePair& pair : pairs) {
-            const auto pictures = loadPair(pair);
-            if (!pictures)
-                return tl::unexpected(pictures.error());
-            const cv::Mat b = binary(blurredDifference(pictures->first, pictures->second, options_), options_);
-            if (overlay.empty())
-                overlay = b;
-            else
-                cv::bitwise_and(overlay, b, overlay);  // binary images multiplied (eq. 12)
+            const auto foreground = load(pair.foreground);
+            if (!foreground)
+                return tl::unexpected(foreground.error());
+            const auto background = load(pair.background);
+            if (!background)
+                return tl::unexpected(background.error());
+            if (!group.coloured) {
+                multiply(overlay, binary(blurred(toGrey(*foreground), toGrey(*background), options_), options_));
+                continue;
+            }
+            if (foreground->channels() != 3 || background->channels() != 3)
+                return none("lit in colours, but its pictures have none");
+            const cv::Mat difference = blurred(*foreground, *background, options_);
+            multiply(overlay, binary(brightestChannel(difference), options_));
+            if (colour.empty())
+                colour = cv::Mat::zeros(difference.size(), CV_32FC3);
+            cv::accumulate(difference, colour);  // a mean but for its scale, which has no hue
         }
         const auto found = blobs(overlay, options_);
-        if (found.size() == 1)
-            return Outcome{Vector2d(static_cast<double>(found[0].pt.x), static_cast<double>(found[0].pt.y)), ""};
-        return Outcome{std::nullopt, found.empty() ? "no blob" : fmt::format("{} blobs instead of one", found.size())};
-    }
-
-    /// Outcome of every module lit in one coloured frame, in its order.
-    tl::expected<std::vector<Outcome>, ScanError> coloured(const FramePair& pair) {
-        const auto pictures = loadPair(pair);
-        if (!pictures)
-            return tl::unexpected(pictures.error());
-        const auto& lit = frames_[pair.foreground].lit;
-        std::vector<Outcome> outcomes(lit.size(), Outcome{std::nullopt, "no blob of its colour"});
-        if (pictures->first.channels() != 3 || pictures->second.channels() != 3)
-            return std::vector<Outcome>(lit.size(), Outcome{std::nullopt, "the frame has no colour"});
-        cv::Mat difference;
-        cv::subtract(pictures->first, pictures->second, difference);
-        cv::GaussianBlur(difference, difference, cv::Size(options_.blurSize, options_.blurSize), options_.blurSigma);
-        // The brightest channel instead of grey, in which blue would hardly show.
-        std::vector<cv::Mat> channels;
-        cv::split(difference, channels);
-        cv::Mat top;
-        cv::max(channels[0], channels[1], top);
-        cv::max(top, channels[2], top);
-        cv::Mat mask;
-        cv::threshold(top, mask, options_.minThreshold, 255, cv::THRESH_BINARY);
-        std::vector<int> count(lit.size(), 0);
-        for (const cv::KeyPoint& blob : blobs(mask, options_)) {
-            const cv::Point at(cvRound(blob.pt.x), cvRound(blob.pt.y));
-            const cv::Vec3b c = difference.at<cv::Vec3b>(at);
-            const std::size_t i = nearestColour(cv::Vec3d(c[0], c[1], c[2]), lit, options_.minSaturation);
-            outcomes[i] = ++count[i] == 1
-                              ? Outcome{Vector2d(static_cast<double>(blob.pt.x), static_cast<double>(blob.pt.y)), ""}
-                              : Outcome{std::nullopt, "more than one blob of its colour"};
-        }
-        return outcomes;
+        if (!group.coloured)
+            return std::vector{onlyBlob(found, options_, "")};
+        return byColour(found, colour, group.lit);
     }
 
   private:
-    tl::expected<std::pair<cv::Mat, cv::Mat>, ScanError> loadPair(const FramePair& pair) {
-        const auto foreground = load_(pair.foreground);
-        if (!foreground)
-            return tl::unexpected(ScanError{foreground.error(), false});
-        const auto background = load_(pair.background);
-        if (!background)
-            return tl::unexpected(ScanError{background.error(), false});
-        if (foreground->size() != background->size() || foreground->type() != background->type())
-            return tl::unexpected(ScanError{fmt::format("{}: expected the size and kind of {}",
-                                                        frames_[pair.foreground].file, frames_[pair.background].file),
-                                            false});
-        return std::pair(*foreground, *background);
+    std::vector<Outcome> byColour(const std::vector<cv::KeyPoint>& found, const cv::Mat& colour,
+                                  const std::vector<LitModule>& lit) const {
+        std::vector<std::vector<cv::KeyPoint>> ofLed(lit.size());
+        for (const cv::KeyPoint& blob : found) {
+            const auto& bgr = colour.at<cv::Vec3f>(cvRound(blob.pt.y), cvRound(blob.pt.x));
+            if (const auto led = ledOfColour(bgr, lit, options_))
+                ofLed[*led].push_back(blob);
+        }
+        std::vector<Outcome> outcomes;
+        for (const auto& candidates : ofLed)
+            outcomes.push_back(onlyBlob(candidates, options_, " of its colour"));
+        return outcomes;
+    }
+
+    tl::expected<cv::Mat, ScanError> load(std::size_t k) {
+        auto loaded = load_(k);
+        if (!loaded)
+            return tl::unexpected(ScanError{std::move(loaded.error()), false});
+        const auto pixels = FramePixels::make(std::move(*loaded), frames_[k].file, size_, false);
+        if (!pixels)
+            return tl::unexpected(ScanError{pixels.error(), false});
+        size_ = pixels->size();
+        return pixels->picture();
     }
 
     std::span<const FrameInfo> frames_;
     const FrameLoader& load_;
     const PaperDetectorOptions& options_;
+    cv::Size size_{};
+};
+
+/// What all groups together say of one module.
+class Verdict {
+  public:
+    void add(const PaperGroup& group, const Outcome& outcome, const PaperDetectorOptions& options) {
+        if (aloneDecides_ && group.coloured)
+            return;
+        if (!group.coloured) {
+            aloneDecides_ = true;
+            outcome_ = outcome;
+        } else if (!outcome_ || (!*outcome_ && !contradicted_)) {
+            outcome_ = outcome;
+        } else if (*outcome_ && outcome && (**outcome_ - *outcome).norm() > 0.5 * options.blurSize) {
+            outcome_ = tl::unexpected(std::string("blobs of its colour at different places in different lit sets"));
+            contradicted_ = true;
+        }
+    }
+    [[nodiscard]] const std::optional<Outcome>& outcome() const { return outcome_; }
+
+  private:
+    std::optional<Outcome> outcome_;
+    bool aloneDecides_ = false;
+    bool contradicted_ = false;
 };
 
 }  // namespace
 
 bool PaperDetectorOptions::validate() const {
     return blurSize > 0 && blurSize % 2 == 1 && blurSigma > 0 && thresholdShare > 0 && thresholdShare < 1 &&
-           minThreshold >= 0 && binaryImages > 0 && minArea >= 0 && maxArea > minArea && sigma_px > 0;
+           minThreshold >= 0 && binaryImages > 0 && minArea >= 0 && maxArea > minArea && maxBlobs > 0 &&
+           nativeColours > 0 && nativeColours <= 7 && sigma_px > 0 && minSaturation > 0 && minSaturation < 1 &&
+           maxHueError > 0 && maxHueError <= std::numbers::pi;
 }
 
-bool suitsPaperDetector(std::span<const FrameInfo> frames) {
-    return std::any_of(frames.begin(), frames.end(), [](const FrameInfo& frame) {
-        return frame.lit.size() == 1 || (isColoured(frame) && frame.lit.size() <= 7);
-    });
+bool suitsPaperDetector(std::span<const FrameInfo> frames, const PaperDetectorOptions& options) {
+    return !paperGroups(frames, options.nativeColours).empty();
 }
 
 tl::expected<ViewDetections, ScanError> detectPaper(std::string name, std::span<const ModuleId> modules,
@@ -198,55 +231,39 @@ tl::expected<ViewDetections, ScanError> detectPaper(std::string name, std::span<
                                                     const PaperDetectorOptions& options, const RunContext& context) {
     if (!options.validate())
         throw std::logic_error("PaperDetectorOptions out of range");
-    std::map<ModuleId, std::vector<FramePair>> alone;
-    std::vector<FramePair> coloured;
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-        const auto background = nearestBackground(frames, k);
-        if (!background)
-            continue;
-        if (frames[k].lit.size() == 1)
-            alone[frames[k].lit[0].module].push_back({k, *background});
-        else if (isColoured(frames[k]) && frames[k].lit.size() <= 7)
-            coloured.push_back({k, *background});
+    const std::vector<PaperGroup> groups = paperGroups(frames, options.nativeColours);
+    Detector detector(frames, load, options);
+    std::map<ModuleId, Verdict> verdicts;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        if (context.isCancelled())
+            return tl::unexpected(ScanError{"cancelled", true});
+        context.report("detecting LEDs", static_cast<double>(i) / static_cast<double>(groups.size()));
+        const auto outcomes = detector.detect(groups[i]);
+        if (!outcomes)
+            return tl::unexpected(outcomes.error());
+        for (std::size_t j = 0; j < outcomes->size(); ++j)
+            verdicts[groups[i].lit[j].module].add(groups[i], (*outcomes)[j], options);
     }
 
-    Detector detector(frames, load, options);
-    std::map<ModuleId, Outcome> outcomes;
-    const auto steps = static_cast<double>(alone.size() + coloured.size());
-    double step = 0;
-    for (auto& [id, pairs] : alone) {
-        if (context.isCancelled())
-            return tl::unexpected(ScanError{"cancelled", true});
-        context.report("detecting LEDs", step++ / steps);
-        if (pairs.size() > static_cast<std::size_t>(options.binaryImages))
-            pairs.resize(static_cast<std::size_t>(options.binaryImages));
-        auto outcome = detector.alone(pairs);
-        if (!outcome)
-            return tl::unexpected(outcome.error());
-        outcomes[id] = std::move(*outcome);
-    }
-    for (const FramePair& pair : coloured) {
-        if (context.isCancelled())
-            return tl::unexpected(ScanError{"cancelled", true});
-        context.report("detecting LEDs", step++ / steps);
-        auto found = detector.coloured(pair);
-        if (!found)
-            return tl::unexpected(found.error());
-        for (std::size_t i = 0; i < found->size(); ++i) {
-            Outcome& known = outcomes[frames[pair.foreground].lit[i].module];
-            if (!known.pixel)
-                known = std::move((*found)[i]);
+    std::set<ModuleId> everLit;
+    for (const FrameInfo& frame : frames) {
+        for (const LitModule& lit : frame.lit) {
+            if (!isBlack(colourOf(lit)))
+                everLit.insert(lit.module);
         }
     }
-
     ViewDetections view{std::move(name), {}, {}};
     for (const ModuleId id : modules) {
-        const auto outcome = outcomes.find(id);
-        if (outcome != outcomes.end() && outcome->second.pixel)
-            view.found.push_back({id, *outcome->second.pixel, options.sigma_px});
+        const auto& outcome = verdicts[id].outcome();
+        if (outcome && *outcome)
+            view.found.push_back({id, **outcome, options.sigma_px});
+        else if (outcome)
+            view.undetected.push_back({id, DetectionVerdict::NotFound, outcome->error()});
         else
             view.undetected.push_back({id, DetectionVerdict::NotFound,
-                                       outcome != outcomes.end() ? outcome->second.reason : Outcome{}.reason});
+                                       everLit.count(id) > 0 ? "lit only together with others: the paper's detector "
+                                                               "needs it alone, or each LED in a colour of its own"
+                                                             : "its LED was never lit"});
     }
     return view;
 }

@@ -7,21 +7,18 @@
 #include <set>
 
 namespace skincal::testing {
-namespace {
 
-void addSpot(cv::Mat& light, const Vector2d& at, double peak, double width, double halo) {
-    const int reach = static_cast<int>(std::ceil(10 * width));
+void addSpot(cv::Mat& light, const Vector2d& at, double peak, double width_px) {
+    const int reach = static_cast<int>(std::ceil(4.5 * width_px));
     const int cx = static_cast<int>(std::lround(at.x()));
     const int cy = static_cast<int>(std::lround(at.y()));
     for (int y = std::max(0, cy - reach); y <= std::min(light.rows - 1, cy + reach); ++y) {
         for (int x = std::max(0, cx - reach); x <= std::min(light.cols - 1, cx + reach); ++x) {
-            const double r2 = (Vector2d(x, y) - at).squaredNorm() / (2 * width * width);
-            light.at<float>(y, x) += static_cast<float>(peak * (std::exp(-r2) + halo * std::exp(-r2 / 6.25)));
+            const double r2 = (Vector2d(x, y) - at).squaredNorm() / (2 * width_px * width_px);
+            light.at<float>(y, x) += static_cast<float>(peak * std::exp(-r2));
         }
     }
 }
-
-}  // namespace
 
 cv::Mat ScanPainter::paint(std::size_t k) const {
     Random random(seed * 1'000'003 + k, "camera noise");
@@ -36,8 +33,10 @@ cv::Mat ScanPainter::paint(std::size_t k) const {
             const double share = !lit.colour ? 1.0 : (*lit.colour)[2 - channel];
             for (const auto* group : {&leds, &mirrored}) {
                 for (const PaintedLed& led : *group) {
-                    if (led.module == lit.module && led.peak * share > 0)
-                        addSpot(light, led.pixel, led.peak * share, width_px, halo);
+                    if (led.module != lit.module || !(led.peak * share > 0))
+                        continue;
+                    addSpot(light, led.pixel, led.peak * share, width_px);
+                    addSpot(light, led.pixel, led.peak * share * halo, 2.5 * width_px);
                 }
             }
         }
@@ -82,11 +81,13 @@ std::vector<PaintedLed> scatterLeds(Random& random, std::size_t count, cv::Size 
     return leds;
 }
 
-std::vector<FrameInfo> oneAtATime(const std::vector<PaintedLed>& leds) {
+std::vector<FrameInfo> oneAtATime(const std::vector<PaintedLed>& leds, int repeats) {
     std::vector<FrameInfo> frames{{"background.png", {}}};
     for (const PaintedLed& led : leds) {
-        frames.push_back({fmt::format("led{}.png", led.module.value), {{led.module}}});
-        frames.push_back({"background.png", {}});
+        for (int repeat = 0; repeat < repeats; ++repeat) {
+            frames.push_back({fmt::format("led{}.png", led.module.value), {{led.module}}});
+            frames.push_back({"background.png", {}});
+        }
     }
     return frames;
 }

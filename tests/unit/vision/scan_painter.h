@@ -39,12 +39,15 @@ struct ScanPainter {
     [[nodiscard]] std::vector<ModuleId> modules() const;
 };
 
+/// Adds a round Gaussian spot to a picture of light (CV_32F).
+void addSpot(cv::Mat& light, const Vector2d& at, double peak, double width_px);
+
 /// `count` LEDs at random places at least `apart` pixels from each other and `margin` from the border.
 [[nodiscard]] std::vector<PaintedLed> scatterLeds(Random& random, std::size_t count, cv::Size size, double apart = 16,
                                                   double margin = 12);
 
-/// A background before, between and after frames with one LED each.
-[[nodiscard]] std::vector<FrameInfo> oneAtATime(const std::vector<PaintedLed>& leds);
+/// A background before, between and after frames with one LED each, `repeats` frames of each LED in a row.
+[[nodiscard]] std::vector<FrameInfo> oneAtATime(const std::vector<PaintedLed>& leds, int repeats = 1);
 
 /// Background, everything, then the bits of a random number per module and their complements.
 [[nodiscard]] std::vector<FrameInfo> coded(const std::vector<PaintedLed>& leds, Random& random);

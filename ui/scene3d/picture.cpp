@@ -63,6 +63,8 @@ void addLegend(vtkRenderer& renderer, const BodyModel& body, const PictureOption
                             patch.T_body_patch ? "" : ", not placed"),
                 size, left, y, patchColour(patch.id), true);
     }
+    if (body.patches.size() > kMaxPatches)
+        addText(renderer, fmt::format("and {} more", body.patches.size() - kMaxPatches), size, left, y, soft);
     std::string figures;
     if (body.quality.residual_rms_px)
         figures += fmt::format("pixel residual {:.3f} px   ", *body.quality.residual_rms_px);
@@ -109,7 +111,8 @@ void addScaleBar(vtkRenderer& renderer, double metresPerPixel, const PictureOpti
 tl::expected<std::string, std::string> drawPicture(const BodyModel& body, const PictureOptions& options) {
     if (!options.validate())
         throw std::logic_error("PictureOptions out of range");
-    if (std::getenv("DISPLAY") == nullptr)
+    const char* display = std::getenv("DISPLAY");
+    if (display == nullptr || *display == '\0')
         return tl::unexpected<std::string>("there is no X display to draw with: run under xvfb-run, or install xvfb");
     auto renderer = vtkSmartPointer<vtkRenderer>::New();
     if (options.dark) {

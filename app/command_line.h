@@ -1,8 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/geometry/run_context.h"
@@ -32,6 +34,15 @@ void addDemoCommand(CommandLine& line);
 
 /// Prints "skincal: MESSAGE" to standard error and returns kBadInput.
 int badInput(const std::string& message);
+
+/// Prints "skincal: MESSAGE" to standard error and returns kDataDoNotSuffice.
+int dataDoNotSuffice(const std::string& message);
+
+/// Prints to standard output; bytes that are no UTF-8, as a path may hold, are replaced.
+void printJson(const nlohmann::ordered_json& json);
+
+/// --seed: a whole number from 0 to 2^64 - 1, and nothing that a conversion would bend into one.
+void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description);
 
 /// True once the user pressed Ctrl-C.
 bool interrupted();

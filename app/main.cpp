@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cstdio>
 #include <exception>
 
 #include "app/command_line.h"
+#include "core/formats/file_error.h"
 
 namespace skincal {
 
@@ -11,37 +14,76 @@ int badInput(const std::string& message) {
     return kBadInput;
 }
 
+int dataDoNotSuffice(const std::string& message) {
+    fmt::print(stderr, "skincal: {}\n", message);
+    return kDataDoNotSuffice;
+}
+
+void printJson(const nlohmann::ordered_json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description) {
+    const auto isSeed = [](const std::string& text) -> std::string {
+        std::uint64_t value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error == std::errc() && end == text.data() + text.size())
+            return {};
+        return "expected a whole number from 0 to 18446744073709551615, found '" + printable(text) + "'";
+    };
+    command.add_option("--seed", seed, description)
+        ->check(CLI::Validator(isSeed, "UINT64", "seed"))
+        ->capture_default_str();
+}
+
+namespace {
+
+int runProgram(int argc, char** argv) {
+    CommandLine line;
+    line.app.name("skincal");
+    line.app.set_version_flag("--version", "skincal " SKINCAL_VERSION);
+    line.app.require_subcommand(1);
+    line.app.footer(
+        "Start here:\n"
+        "  skincal demo                                   simulate a skin, calibrate it, look at the result\n"
+        "  skincal calibrate arm.skinrec -o arm.body.json  your own recording\n"
+        "  skincal export arm.body.json --format urdf -o arm.urdf\n\n"
+        "Exit codes: 0 done; 1 the data do not suffice (what is missing is printed); 2 bad input or usage.\n"
+        "Every command explains itself: skincal COMMAND --help.");
+    addDemoCommand(line);
+    addCalibrateCommand(line);
+    addSimulateCommand(line);
+    addCompareCommand(line);
+    addRenderCommand(line);
+    addExportCommand(line);
+    addReproducePaperCommand(line);
+    try {
+        line.app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return line.app.exit(error) == 0 ? kDone : kBadInput;
+    }
+    return line.run();
+}
+
+/// Standard output is buffered: that a disk is full shows when it is flushed, or before where much is printed.
+bool standardOutputFailed() {
+    return std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+}
+
+}  // namespace
 }  // namespace skincal
 
 int main(int argc, char** argv) {
     using namespace skincal;
+    int code = kBadInput;
     try {
-        CommandLine line;
-        line.app.name("skincal");
-        line.app.set_version_flag("--version", "skincal " SKINCAL_VERSION);
-        line.app.require_subcommand(1);
-        line.app.footer(
-            "Start here:\n"
-            "  skincal demo                                   simulate a skin, calibrate it, look at the result\n"
-            "  skincal calibrate arm.skinrec -o arm.body.json  your own recording\n"
-            "  skincal export arm.body.json --format urdf -o arm.urdf\n\n"
-            "Exit codes: 0 done; 1 the data do not suffice (what is missing is printed); 2 bad input or usage.\n"
-            "Every command explains itself: skincal COMMAND --help.");
-        addDemoCommand(line);
-        addCalibrateCommand(line);
-        addSimulateCommand(line);
-        addCompareCommand(line);
-        addRenderCommand(line);
-        addExportCommand(line);
-        addReproducePaperCommand(line);
-        try {
-            line.app.parse(argc, argv);
-        } catch (const CLI::ParseError& error) {
-            return line.app.exit(error) == 0 ? kDone : kBadInput;
-        }
-        return line.run();
+        code = runProgram(argc, argv);
     } catch (const std::exception& error) {
         // Nothing that a file holds leads here; if it does, it is a fault of ours and worth a report.
-        return badInput(fmt::format("internal error: {}", error.what()));
+        if (std::ferror(stdout) == 0)
+            return badInput(fmt::format("internal error: {}", error.what()));
     }
+    if (standardOutputFailed())
+        return badInput("can't write to standard output");
+    return code;
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/formats/file_error.h"
+
 namespace skincal {
 namespace {
 
@@ -37,8 +39,9 @@ std::string qualityTable(const BodyModel& body) {
     constexpr std::size_t kMaxRows = 30;
     for (std::size_t k = 0; k < std::min(kMaxRows, body.patches.size()); ++k) {
         const BodyPatch& patch = body.patches[k];
-        text += fmt::format("{:>5}  {:>6}  {:>7}  {:>6}  {:>5}  {}\n", patch.id.value, patch.origin.value,
-                            patch.modules.size(), placedIn(body, patch.id), patch.views.size(), patch.status);
+        text +=
+            fmt::format("{:>5}  {:>6}  {:>7}  {:>6}  {:>5}  {}\n", patch.id.value, patch.origin.value,
+                        patch.modules.size(), placedIn(body, patch.id), patch.views.size(), printable(patch.status));
     }
     if (body.patches.size() > kMaxRows)
         text += fmt::format("  … and {} patches more\n", body.patches.size() - kMaxRows);
@@ -56,9 +59,9 @@ std::string qualityTable(const BodyModel& body) {
     text += fmt::format("method             {}\n", body.generator.method);
     text += fmt::format("verdict            {}\n", trustInWords(q.trust));
     for (const std::string& warning : q.warnings)
-        text += fmt::format("warning: {}\n", warning);
+        text += fmt::format("warning: {}\n", printable(warning));
     for (const std::string& missing : q.missing)
-        text += fmt::format("missing: {}\n", missing);
+        text += fmt::format("missing: {}\n", printable(missing));
     return text;
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/command_line.h"
+#include "app/outcome.h"
 #include "app/quality_table.h"
 #include "core/formats/body_json.h"
 #include "core/workflow/calibrate.h"
@@ -18,14 +19,20 @@ struct CalibrateArguments {
 };
 
 std::filesystem::path defaultOutput(const std::filesystem::path& recording) {
-    auto name = recording.filename().empty() ? recording.parent_path().filename() : recording.filename();
-    return name.replace_extension(".body.json");
+    // "." and ".." have no name of their own.
+    std::error_code error;
+    const std::filesystem::path full = std::filesystem::canonical(recording, error);
+    auto name = full.filename().empty() ? full.parent_path().filename() : full.filename();
+    return name.empty() ? "recording.body.json" : name.replace_extension(".body.json");
 }
 
 int runCalibrate(const CalibrateArguments& arguments) {
     const auto recording = readRecording(arguments.recording);
     if (!recording)
         return badInput(recording.error().message());
+    const auto output = arguments.output.empty() ? defaultOutput(arguments.recording) : arguments.output;
+    if (const auto complaint = complaintAboutOutput(output, pathsOf(arguments.recording, *recording)))
+        return badInput(*complaint);
     CalibrateOptions options;
     options.method = *methodFromName(arguments.method);
     tl::expected<BodyModel, CalibrateError> body;
@@ -33,30 +40,23 @@ int runCalibrate(const CalibrateArguments& arguments) {
         TerminalProgress progress;
         body = calibrate(*recording, framesOf(arguments.recording, *recording), options, progress.context());
     }
-    if (!body && body.error().cancelled)
-        return badInput("interrupted, nothing was written");
-    if (!body && body.error().badInput)
-        return badInput(body.error().message);
-    if (!body) {
-        fmt::print(stderr, "skincal: the data do not suffice: {}\n", body.error().message);
-        return kDataDoNotSuffice;
-    }
+    if (!body)
+        return reportFailure(body.error());
     auto digests = digestRecording(arguments.recording, *recording);
     if (!digests)
         return badInput(digests.error().message());
     body->generator.recording_sha256 = std::move(*digests);
-    const auto output = arguments.output.empty() ? defaultOutput(arguments.recording) : arguments.output;
-    if (const auto written = writeBody(*body, output); !written)
+    if (const auto written = writeBody(*body, output, recording->unknownOfTypes); !written)
         return badInput(written.error().message());
 
     if (arguments.json) {
         auto json = qualityJson(*body);
         json["output"] = output.string();
-        fmt::print("{}\n", json.dump(2));
+        printJson(json);
     } else {
-        fmt::print("{}\nbody model         {}\n", qualityTable(*body), output.string());
+        fmt::print("{}\nbody model         {}\n", qualityTable(*body), printable(output.string()));
     }
-    return body->quality.modulesPlaced < body->quality.modulesTotal ? kDataDoNotSuffice : kDone;
+    return exitCodeOf(*body);
 }
 
 }  // namespace
@@ -75,8 +75,16 @@ void addCalibrateCommand(CommandLine& line) {
         ->capture_default_str();
     command->add_flag("--json", arguments->json, "Print the quality figures as JSON");
     command->footer(
-        "A body model is written even where modules could not be placed; they have no pose in it, the exit\n"
-        "code is 1, and what is missing is printed.");
+        "A recording is a directory with recording.json, which holds\n"
+        "  the module types (outline, LED, ports) and the modules with their ids,\n"
+        "  the links port to port that the network reported, and the camera's intrinsics;\n"
+        "  gravity.csv: what each accelerometer read at rest, in several poses of the body;\n"
+        "  and per view either pictures with the list of lit LEDs, or detections.csv with LED positions.\n"
+        "docs/formats/recording.md describes it key by key, docs/formats/body-model.md the result.\n\n"
+        "A body model is written even where modules could not be placed; they have no pose in it, and what is\n"
+        "missing is printed.\n\n"
+        "Exit codes: 0 every module is placed; 1 the data do not suffice: a module or all are not placed, or the\n"
+        "verdict is \"not to be trusted\"; 2 bad input or usage, nothing is written.");
     command->callback([&line, arguments] { line.run = [arguments] { return runCalibrate(*arguments); }; });
 }
 

@@ -33,10 +33,8 @@ int runCompare(const CompareArguments& arguments) {
     for (const TrueModule& module : truth->modules)
         real.push_back({module.id, module.T_body_module});
     const auto difference = compareBodies(found, real);
-    if (!difference) {
-        fmt::print(stderr, "skincal: nothing to compare: the body and the truth share no placed module\n");
-        return kDataDoNotSuffice;
-    }
+    if (!difference)
+        return dataDoNotSuffice("nothing to compare: the body and the truth share no placed module");
     if (arguments.json) {
         nlohmann::ordered_json json;
         json["modules"] = real.size();
@@ -46,7 +44,7 @@ int runCompare(const CompareArguments& arguments) {
         json["rotation_rms"] = difference->rotationRms;
         json["rotation_max"] = difference->rotationMax;
         json["worst_module"] = difference->worst.value;
-        fmt::print("{}\n", json.dump(2));
+        printJson(json);
     } else {
         fmt::print("modules placed   {} of {}\n", difference->compared, real.size());
         fmt::print("position         {:.3f} mm rms, {:.3f} mm max (module {})\n", difference->positionRms * 1e3,

@@ -4,6 +4,7 @@
 
 #include "app/command_line.h"
 #include "app/headless_display.h"
+#include "app/outcome.h"
 #include "app/quality_table.h"
 #include "core/estimation/compare.h"
 #include "core/formats/body_json.h"
@@ -17,50 +18,87 @@ namespace {
 struct DemoArguments {
     std::filesystem::path output = "out";
     std::uint64_t seed = 1;
+    bool json = false;
 };
 
-int runDemo(const DemoArguments& arguments) {
-    const World world = buildWorld(*findScenario("demo"), arguments.seed);
-    const Recording recording = recordingOf(world);
-    fmt::print("A simulated arm: {} modules in {} patches, {} views of {} frames, lit in coded patterns.\n\n",
-               world.T_r_u.size(), world.scenario.patches.size(), recording.views.size(),
-               recording.views.front().frames.size());
-    tl::expected<BodyModel, CalibrateError> body;
-    {
-        TerminalProgress progress;
-        body = calibrate(recording, framesOf(world, recording), {}, progress.context());
-    }
-    if (!body)
-        return badInput(body.error().message);
+constexpr const char* kBodyFile = "demo.body.json";
+constexpr const char* kPictureFile = "demo.png";
+
+/// Makes the directory and asks whether both results can be written there.
+std::optional<std::string> complaintAboutDirectory(const DemoArguments& arguments) {
     std::error_code error;
     std::filesystem::create_directories(arguments.output, error);
-    const auto bodyFile = arguments.output / "demo.body.json";
-    if (const auto written = writeBody(*body, bodyFile); !written)
-        return badInput(written.error().message());
-    fmt::print("{}", qualityTable(*body));
+    if (error)
+        return FileError{arguments.output, "", "can't make the directory: " + error.message()}.message();
+    for (const char* name : {kBodyFile, kPictureFile}) {
+        if (auto complaint = complaintAboutOutput(arguments.output / name))
+            return complaint;
+    }
+    return std::nullopt;
+}
 
+tl::expected<BodyComparison, CalibrationError> differenceFromTruth(const BodyModel& body, const World& world) {
     std::vector<NamedPose> found;
-    for (const BodyModule& module : body->modules) {
+    for (const BodyModule& module : body.modules) {
         if (module.T_body_module)
             found.push_back({module.id, *module.T_body_module});
     }
     std::vector<NamedPose> real;
     for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
         real.push_back({world.skin.modules[u].id, world.T_r_u[u]});
-    if (const auto difference = compareBodies(found, real))
+    return compareBodies(found, real);
+}
+
+void printResult(const DemoArguments& arguments, const BodyModel& body,
+                 const tl::expected<BodyComparison, CalibrationError>& difference) {
+    if (arguments.json) {
+        auto json = qualityJson(body);
+        if (difference) {
+            json["truth"]["position_rms"] = difference->positionRms;
+            json["truth"]["rotation_rms"] = difference->rotationRms;
+        }
+        json["output"] = (arguments.output / kBodyFile).string();
+        json["picture"] = (arguments.output / kPictureFile).string();
+        printJson(json);
+        return;
+    }
+    fmt::print("{}", qualityTable(body));
+    if (difference)
         fmt::print("against the truth  {:.2f} mm and {:.2f}° rms\n", difference->positionRms * 1e3,
                    difference->rotationRms / kDegree);
-    fmt::print("body model         {}\n", bodyFile.string());
+    fmt::print("body model         {}\n", printable((arguments.output / kBodyFile).string()));
+    fmt::print("picture            {}\n", printable((arguments.output / kPictureFile).string()));
+}
 
+int runDemo(const DemoArguments& arguments) {
+    if (const auto complaint = complaintAboutDirectory(arguments))
+        return badInput(*complaint);
     const HeadlessDisplay display;
+    if (!display.complaint().empty())
+        return badInput(display.complaint());
+    const World world = buildWorld(*findScenario("demo"), arguments.seed);
+    const Recording recording = recordingOf(world);
+    if (!arguments.json)
+        fmt::print("A simulated arm: {} modules in {} patches, {} views of {} frames, lit in coded patterns.\n\n",
+                   world.T_r_u.size(), world.scenario.patches.size(), recording.views.size(),
+                   recording.views.front().frames.size());
+    std::fflush(stdout);  // calibrating takes a while
+    tl::expected<BodyModel, CalibrateError> body;
+    {
+        TerminalProgress progress;
+        body = calibrate(recording, framesOf(world, recording), {}, progress.context());
+    }
+    if (!body)
+        return reportFailure(body.error());
+    if (const auto written = writeBody(*body, arguments.output / kBodyFile); !written)
+        return badInput(written.error().message());
     const auto png = drawPicture(*body);
     if (!png)
         return badInput(png.error());
-    const auto picture = arguments.output / "demo.png";
-    if (const auto written = writeFileAtomically(picture, *png); !written)
+    if (const auto written = writeFileAtomically(arguments.output / kPictureFile, *png); !written)
         return badInput(written.error().message());
-    fmt::print("picture            {}\n", picture.string());
-    return body->quality.modulesPlaced < body->quality.modulesTotal ? kDataDoNotSuffice : kDone;
+    printResult(arguments, *body, differenceFromTruth(*body, world));
+    return exitCodeOf(*body);
 }
 
 }  // namespace
@@ -70,7 +108,8 @@ void addDemoCommand(CommandLine& line) {
     CLI::App* command =
         line.app.add_subcommand("demo", "Simulate an arm, scan and calibrate it, write body model and picture");
     command->add_option("-o,--output", arguments->output, "Directory for the results")->capture_default_str();
-    command->add_option("--seed", arguments->seed, "Another seed, another world")->capture_default_str();
+    addSeedOption(*command, arguments->seed, "Another seed, another world");
+    command->add_flag("--json", arguments->json, "Print the figures as JSON");
     command->callback([&line, arguments] { line.run = [arguments] { return runDemo(*arguments); }; });
 }
 

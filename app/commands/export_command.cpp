@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/command_line.h"
+#include "app/outcome.h"
 #include "core/formats/body_json.h"
 #include "core/formats/export_csv.h"
 #include "core/formats/export_ply.h"
@@ -16,16 +17,18 @@ struct ExportArguments {
     std::filesystem::path body;
     std::filesystem::path output;
     std::string format;
+    bool json = false;
 };
 
 int runExport(const ExportArguments& arguments) {
     const auto body = readBody(arguments.body);
     if (!body)
         return badInput(body.error().message());
-    if (body->quality.modulesPlaced == 0) {
-        fmt::print(stderr, "skincal: {} holds no placed module, there is nothing to export\n", arguments.body.string());
-        return kDataDoNotSuffice;
-    }
+    if (body->quality.modulesPlaced == 0)
+        return dataDoNotSuffice(
+            fmt::format("{} holds no placed module, there is nothing to export", printable(arguments.body.string())));
+    if (const auto complaint = complaintAboutOutput(arguments.output, {arguments.body}))
+        return badInput(*complaint);
     std::string bytes;
     if (arguments.format == "urdf")
         bytes = exportUrdf(*body);
@@ -35,8 +38,18 @@ int runExport(const ExportArguments& arguments) {
         bytes = exportPly(*body);
     if (const auto written = writeFileAtomically(arguments.output, bytes); !written)
         return badInput(written.error().message());
-    fmt::print("{}: {} of {} modules, metres, frame \"{}\"\n", arguments.output.string(), body->quality.modulesPlaced,
-               body->quality.modulesTotal, body->body_frame);
+    if (arguments.json) {
+        nlohmann::ordered_json json;
+        json["output"] = arguments.output.string();
+        json["format"] = arguments.format;
+        json["modules_placed"] = body->quality.modulesPlaced;
+        json["modules_total"] = body->quality.modulesTotal;
+        json["body_frame"] = body->body_frame;
+        printJson(json);
+        return kDone;
+    }
+    fmt::print("{}: {} of {} modules, metres, frame \"{}\"\n", printable(arguments.output.string()),
+               body->quality.modulesPlaced, body->quality.modulesTotal, printable(body->body_frame));
     return kDone;
 }
 
@@ -52,6 +65,7 @@ void addExportCommand(CommandLine& line) {
         ->check(CLI::IsMember({"urdf", "csv", "ply"}))
         ->required();
     command->add_option("-o,--output", arguments->output, "The file to write")->required();
+    command->add_flag("--json", arguments->json, "Print what was written as JSON");
     command->callback([&line, arguments] { line.run = [arguments] { return runExport(*arguments); }; });
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/command_line.h"
 #include "app/headless_display.h"
+#include "app/outcome.h"
 #include "core/formats/body_json.h"
 #include "core/formats/files.h"
 #include "ui/scene3d/picture.h"
@@ -15,19 +16,37 @@ struct RenderArguments {
     std::filesystem::path body;
     std::filesystem::path output;
     PictureOptions picture;
+    bool json = false;
 };
 
 int runRender(const RenderArguments& arguments) {
     const auto body = readBody(arguments.body);
     if (!body)
         return badInput(body.error().message());
+    if (body->quality.modulesPlaced == 0)
+        return dataDoNotSuffice(
+            fmt::format("{} holds no placed module, there is nothing to draw", printable(arguments.body.string())));
+    if (const auto complaint = complaintAboutOutput(arguments.output, {arguments.body}))
+        return badInput(*complaint);
     const HeadlessDisplay display;
+    if (!display.complaint().empty())
+        return badInput(display.complaint());
     const auto png = drawPicture(*body, arguments.picture);
     if (!png)
         return badInput(png.error());
     if (const auto written = writeFileAtomically(arguments.output, *png); !written)
         return badInput(written.error().message());
-    fmt::print("{}\n", arguments.output.string());
+    if (arguments.json) {
+        nlohmann::ordered_json json;
+        json["output"] = arguments.output.string();
+        json["width"] = arguments.picture.width;
+        json["height"] = arguments.picture.height;
+        json["modules_placed"] = body->quality.modulesPlaced;
+        json["modules_total"] = body->quality.modulesTotal;
+        printJson(json);
+    } else {
+        fmt::print("{}\n", printable(arguments.output.string()));
+    }
     return kDone;
 }
 
@@ -45,6 +64,7 @@ void addRenderCommand(CommandLine& line) {
         ->check(CLI::Range(64, 8192))
         ->capture_default_str();
     command->add_flag("--dark", arguments->picture.dark, "Dark background");
+    command->add_flag("--json", arguments->json, "Print what was written as JSON");
     command->callback([&line, arguments] { line.run = [arguments] { return runRender(*arguments); }; });
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line.h"
+#include "app/outcome.h"
 #include "core/formats/files.h"
 #include "core/study/paper_experiments.h"
 
@@ -44,6 +45,10 @@ nlohmann::ordered_json toJson(const PaperStudy& study) {
 }
 
 int runReproduce(const ReproduceArguments& arguments) {
+    if (!arguments.json.empty()) {
+        if (const auto complaint = complaintAboutOutput(arguments.json))
+            return badInput(*complaint);
+    }
     PaperStudy study;
     {
         TerminalProgress progress;

@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "app/command_line.h"
+#include "app/outcome.h"
+#include "core/formats/files.h"
 #include "core/formats/truth_json.h"
 #include "core/workflow/simulated_recording.h"
 
@@ -17,17 +19,43 @@ struct SimulateArguments {
     std::uint64_t seed = 1;
     bool list = false;
     bool force = false;
+    bool json = false;
 };
 
-int listScenarios() {
+int listScenarios(bool asJson) {
+    if (asJson) {
+        auto json = nlohmann::ordered_json::array();
+        for (const Scenario& scenario : builtInScenarios())
+            json.push_back({{"name", scenario.name}, {"description", scenario.description}});
+        printJson(json);
+        return kDone;
+    }
     for (const Scenario& scenario : builtInScenarios())
         fmt::print("{:<16} {}\n", scenario.name, scenario.description);
     return kDone;
 }
 
+/// Asked before anything is drawn. The truth may go into the recording's directory, which need not be there yet.
+std::optional<std::string> complaintAboutTruth(const SimulateArguments& arguments, const Recording& recording) {
+    if (arguments.truth.empty())
+        return std::nullopt;
+    std::error_code error;
+    const auto paths = pathsOf(arguments.output, recording);
+    for (const std::filesystem::path& path : paths) {
+        if (sameFile(path, arguments.truth))
+            return FileError{arguments.truth, "", "expected another file for the truth, the recording has this one"}
+                .message();
+    }
+    const auto directory = (std::filesystem::weakly_canonical(arguments.output, error) / "").parent_path();
+    if (!std::filesystem::exists(directory, error) &&
+        std::filesystem::weakly_canonical(arguments.truth, error).parent_path() == directory)
+        return std::nullopt;
+    return complaintAboutOutput(arguments.truth);
+}
+
 int runSimulate(const SimulateArguments& arguments) {
     if (arguments.list)
-        return listScenarios();
+        return listScenarios(arguments.json);
     const Scenario* scenario = findScenario(arguments.scenario);
     if (scenario == nullptr)
         return badInput(
@@ -35,6 +63,11 @@ int runSimulate(const SimulateArguments& arguments) {
     if (arguments.output.empty())
         return badInput("expected -o RECORDING, the directory to write");
     const World world = buildWorld(*scenario, arguments.seed);
+    Recording planned = recordingOf(world);
+    planned.gravityFile = "gravity.csv";
+    planned.detectionsFile = "detections.csv";
+    if (const auto complaint = complaintAboutTruth(arguments, planned))
+        return badInput(*complaint);
     {
         TerminalProgress progress;
         const auto written = writeSimulation(world, arguments.output, arguments.force, progress.context());
@@ -45,8 +78,22 @@ int runSimulate(const SimulateArguments& arguments) {
         if (const auto written = writeTruth(truthOf(world), arguments.truth); !written)
             return badInput(written.error().message());
     }
-    fmt::print("{}: {} modules in {} patches, {} views, seed {}\n", arguments.output.string(), world.T_r_u.size(),
-               scenario->patches.size(), world.T_r_v.size(), arguments.seed);
+    if (arguments.json) {
+        nlohmann::ordered_json json;
+        json["output"] = arguments.output.string();
+        json["truth"] = nullptr;
+        if (!arguments.truth.empty())
+            json["truth"] = arguments.truth.string();
+        json["scenario"] = scenario->name;
+        json["seed"] = arguments.seed;
+        json["modules"] = world.T_r_u.size();
+        json["patches"] = scenario->patches.size();
+        json["views"] = world.T_r_v.size();
+        printJson(json);
+        return kDone;
+    }
+    fmt::print("{}: {} modules in {} patches, {} views, seed {}\n", printable(arguments.output.string()),
+               world.T_r_u.size(), scenario->patches.size(), world.T_r_v.size(), arguments.seed);
     return kDone;
 }
 
@@ -58,9 +105,10 @@ void addSimulateCommand(CommandLine& line) {
     command->add_option("SCENARIO", arguments->scenario, "One of --list");
     command->add_option("-o,--output", arguments->output, "The *.skinrec directory to write");
     command->add_option("--truth", arguments->truth, "Also write what is true, for skincal compare");
-    command->add_option("--seed", arguments->seed, "Same seed, same bytes")->capture_default_str();
+    addSeedOption(*command, arguments->seed, "Same seed, same bytes");
     command->add_flag("--list", arguments->list, "Name the scenarios");
     command->add_flag("--force", arguments->force, "Overwrite a recording that is there");
+    command->add_flag("--json", arguments->json, "Print what was written, or the list, as JSON");
     command->callback([&line, arguments] { line.run = [arguments] { return runSimulate(*arguments); }; });
 }
 

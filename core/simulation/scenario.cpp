@@ -198,7 +198,9 @@ std::vector<Scenario> makeScenarios() {
     coded.name = "person";
     coded.description = "coded pictures while somebody walks through";
     coded.disturbances.person = true;
+    coded.views.count = 6;
     all.push_back(coded);
+    coded.views.count = small.views.count;
     coded.disturbances = {};
     coded.name = "occluder";
     coded.description = "coded pictures with something in front of part of the skin";

@@ -128,7 +128,7 @@ TEST(Renderer, EachDisturbanceChangesThePictureAsItSays) {
     for (const cv::Mat& frame : flicker)
         swing = std::max(swing, std::abs(lampSide(frame) - lampSide(calm[0])));
     EXPECT_GT(swing, 10);
-    EXPECT_GT(difference(person[3], person[6]), 2 * difference(calm[3], calm[6]));
+    EXPECT_GT(difference(person[3], person[6]), 1.3 * difference(calm[3], calm[6]));
     EXPECT_EQ(difference(bumped[0], calm[0]), 0) << "the first half is as it was";
     EXPECT_GT(difference(bumped[9], calm[9]), 0);
     EXPECT_GT(difference(mirror[0], calm[0]), 0);
@@ -147,7 +147,7 @@ TEST(Renderer, WhoStandsInFrontHidesLedsWithASoftEdge) {
         still(s);
         s.disturbances.person = true;
     });
-    constexpr std::size_t kFrames = 25;
+    constexpr std::size_t kFrames = 50;
     const FrameRenderer alone(open, 0, kFrames);
     const FrameRenderer crowded(passed, 0, kFrames);
     int hidden = 0;
@@ -165,7 +165,7 @@ TEST(Renderer, WhoStandsInFrontHidesLedsWithASoftEdge) {
             shown += seen.at<float>(place) == free.at<float>(place) ? 1 : 0;
         }
     }
-    EXPECT_GT(hidden, 10) << "he walks through the whole picture";
+    EXPECT_GT(hidden, 10) << "he walks past both patches";
     EXPECT_GT(shown, hidden) << "and hides little of it at a time";
 
     const Person person = paintPerson(open.scenario.camera, open.scenario.pictures);

@@ -11,7 +11,8 @@ namespace skincal {
 namespace {
 
 constexpr std::size_t kNoiseTable = std::size_t{1} << 16U;
-constexpr double kReferenceDistance = 0.6;  // m, at which RenderOptions::ledPeak holds
+constexpr std::array<double, 3> kWarmLight{0.88, 1.0, 1.07};  // BGR, of the room in colour pictures
+constexpr double kReferenceDistance = 0.6;                    // m, at which RenderOptions::ledPeak holds
 
 /// Share of a lamp's light that reaches each part of the picture: most of it about the lamp, some of it everywhere.
 cv::Mat lampLight(const CameraModel& camera) {
@@ -170,6 +171,8 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
     std::vector<cv::Mat> channels;
     for (int channel = 0; channel < (colour ? 3 : 1); ++channel) {
         cv::Mat light = (bumped(frame) ? bumpedBackground_ : background_).clone();
+        if (colour)
+            light *= kWarmLight.at(static_cast<std::size_t>(channel));
         if (!lamp_.empty())
             cv::scaleAdd(lamp_, world_.scenario.disturbances.flicker * flickerAt(frame), light, light);
         for (const LitModule& l : lit) {

@@ -151,7 +151,7 @@ void addTube(const Tube& tube, const Isometry3d& T_v_r, std::vector<Group>& grou
         for (const Vector3d& p : corners)
             middle += p / static_cast<double>(corners.size());
         if (normal.dot(middle) < 0)
-            groups.push_back({middle.norm() + 0.03, {{std::move(corners), brightness * shade(normal)}}});
+            groups.push_back({middle.norm() + 0.06, {{std::move(corners), brightness * shade(normal)}}});
     };
     for (int i = 0; i < kRound; ++i) {
         for (int k = 0; k < pieces; ++k) {

@@ -5,9 +5,22 @@
 #include <cmath>
 
 #include "core/estimation/body_assembly.h"
+#include "core/estimation/patch_shape.h"
 
 namespace skincal {
 namespace {
+
+/// The skin sorted out by what really is, where an estimate has to judge.
+SkinLayout layoutOf(const World& world) {
+    SkinLayout layout;
+    layout.graph = buildSkinGraph(world.skin);
+    for (const GraphLink& link : layout.graph.links()) {
+        LinkVerdict verdict;
+        verdict.kind = world.isCable[link.reported.front()] ? LinkKind::Cable : LinkKind::Adjacent;
+        layout.verdicts.push_back(verdict);
+    }
+    return layout;
+}
 
 AdjustmentInput inputOf(const World& world, const Measurements& measurements, const GravityTable& gravity) {
     AdjustmentInput input;
@@ -16,16 +29,7 @@ AdjustmentInput inputOf(const World& world, const Measurements& measurements, co
     input.gravity = &gravity;
     input.pixels = flattenDetections(measurements);
     input.gravityGroup.assign(measurements.skin.modules.size(), 0);
-    const auto index = world.skin.indexById();
-    for (std::size_t l = 0; l < world.skin.links.size(); ++l) {
-        if (world.isCable[l])
-            continue;
-        const Link& link = world.skin.links[l];
-        const std::size_t a = index.at(link.a);
-        const std::size_t b = index.at(link.b);
-        input.links.push_back({a, b, world.skin.templateOf(a).ports[static_cast<std::size_t>(link.a_port)],
-                               world.skin.templateOf(b).ports[static_cast<std::size_t>(link.b_port)]});
-    }
+    input.links = adjacentPorts(world.skin, layoutOf(world));
     return input;
 }
 

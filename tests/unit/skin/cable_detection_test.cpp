@@ -11,11 +11,6 @@ namespace {
 using test::link;
 using testing::HasSubstr;
 
-CableEvidence noEvidence(const SkinGraph& graph) {
-    return {std::vector<std::optional<Matrix3d>>(graph.links().size()),
-            std::vector<std::optional<double>>(graph.links().size())};
-}
-
 /// R_a_b of a link whose modules are bent about an axis in the plane of the skin, then turned about the normal.
 Matrix3d arranged(const Skin& skin, const GraphLink& l, double bend, double twist, double axisAzimuth = 0.7) {
     const Vector3d axis(std::cos(axisAzimuth), std::sin(axisAzimuth), 0);
@@ -38,7 +33,7 @@ Skin pairOfHexagons() {
 }
 
 TEST(FlatNeighbourRotation, IsTheOneOfThePlane) {
-    for (const test::KnownSkin& grid : {test::hexagonGrid(3, 3), test::rectangleGrid(3, 3), test::triangleGrid(3, 3)}) {
+    for (const KnownSkin& grid : {test::hexagonGrid(3, 3), test::rectangleGrid(3, 3), test::triangleGrid(3, 3)}) {
         const SkinGraph graph = buildSkinGraph(grid.skin);
         for (const GraphLink& l : graph.links()) {
             const Vector3d p_a = test::portOf(grid.skin, l.a, l.a_port);

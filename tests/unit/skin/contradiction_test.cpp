@@ -134,7 +134,7 @@ TEST(ContradictoryLinks, AreJudgedTheSameInWhateverOrderTheyAreTold) {
     Random random(1, "order");
     int contradictory = 0;
     for (int i = 0; i < 100; ++i) {
-        FlatSkin flat = growFlatSkin(random, paperHexagon(), 20);
+        KnownSkin flat = growFlatSkin(random, paperHexagon(), 20);
         // Claims on random ports, words on some links, and modules that nobody measured.
         for (int k = 0; k < 8; ++k) {
             const auto draw = [&] { return flat.skin.modules[random.index(20)].id; };
@@ -154,7 +154,7 @@ TEST(ContradictoryLinks, AreJudgedTheSameInWhateverOrderTheyAreTold) {
         std::map<ModuleId, std::optional<Matrix3d>> R_r_u;
         for (std::size_t u = 0; u < 20; ++u) {
             if (random.uniform() < 0.8)
-                R_r_u[flat.skin.modules[u].id] = flat.T_r_u[u].linear();
+                R_r_u[flat.skin.modules[u].id] = flat.T_s_u[u].linear();
         }
         const auto judged = [&](const Skin& skin) {
             const SkinGraph graph = buildSkinGraph(skin);

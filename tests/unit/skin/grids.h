@@ -1,20 +1,11 @@
 #pragma once
 
-#include <functional>
-#include <map>
-#include <vector>
+#include <optional>
 
-#include "core/geometry/random.h"
 #include "core/skin/skin.h"
-#include "core/skin/skin_graph.h"
+#include "tests/unit/skin/synthetic_skin.h"
 
 namespace skincal::test {
-
-/// A skin whose shape is known.
-struct KnownSkin {
-    Skin skin;
-    std::vector<Isometry3d> T_s_u;  ///< per module, in a frame of the skin's own
-};
 
 inline Link link(unsigned a, int a_port, unsigned b, int b_port, std::optional<LinkKind> decided = std::nullopt) {
     return {ModuleId(a), a_port, ModuleId(b), b_port, decided};
@@ -76,25 +67,6 @@ inline KnownSkin triangleGrid(int columns, int rows) {
         }
     }
     return grid;
-}
-
-template <class T>
-void shuffle(std::vector<T>& values, Random& random) {
-    for (std::size_t i = values.size(); i > 1; --i)
-        std::swap(values[i - 1], values[random.index(i)]);
-}
-
-/// The same skin told in another order, links from the other end half of the time.
-inline Skin retold(Skin skin, Random& random) {
-    shuffle(skin.modules, random);
-    shuffle(skin.links, random);
-    for (Link& l : skin.links) {
-        if (random.uniform() < 0.5) {
-            std::swap(l.a, l.b);
-            std::swap(l.a_port, l.b_port);
-        }
-    }
-    return skin;
 }
 
 inline Vector3d portOf(const Skin& skin, std::size_t module, int port) {

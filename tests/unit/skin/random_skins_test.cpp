@@ -15,22 +15,6 @@ namespace {
 
 using Edges = std::vector<std::pair<std::size_t, std::size_t>>;
 
-/// Links between all pairs, by Floyd and Warshall.
-std::vector<std::vector<int>> allDistances(std::size_t size, const Edges& edges) {
-    std::vector<std::vector<int>> d(size, std::vector<int>(size, 1'000'000));
-    for (std::size_t i = 0; i < size; ++i)
-        d[i][i] = 0;
-    for (const auto& [a, b] : edges)
-        d[a][b] = d[b][a] = std::min(d[a][b], 1);
-    for (std::size_t k = 0; k < size; ++k) {
-        for (std::size_t i = 0; i < size; ++i) {
-            for (std::size_t j = 0; j < size; ++j)
-                d[i][j] = std::min(d[i][j], d[i][k] + d[k][j]);
-        }
-    }
-    return d;
-}
-
 /// A random tree over `size` nodes, long or bushy, and `extra` edges more: loops, parallel links, links to oneself.
 Edges randomConnected(Random& random, std::size_t size, std::size_t extra) {
     Edges edges;
@@ -47,9 +31,9 @@ TEST(RandomSkins, FlatOnesAreAllNeighboursWhateverTheShape) {
     const double error = 4 * kDegree;
     for (const auto& type : {paperHexagon(), triangleTemplate(), rectangleTemplate()}) {
         for (int i = 0; i < 10; ++i) {
-            const FlatSkin flat = growFlatSkin(random, type, 5 + random.index(40));
+            const KnownSkin flat = growFlatSkin(random, type, 5 + random.index(40));
             const SkinGraph graph = buildSkinGraph(flat.skin);
-            const auto verdicts = detectCables(flat.skin, graph, rotationEvidence(graph, flat.T_r_u, random, error));
+            const auto verdicts = detectCables(flat.skin, graph, rotationEvidence(graph, flat.T_s_u, random, error));
             for (const LinkVerdict& verdict : verdicts) {
                 EXPECT_EQ(verdict.kind, LinkKind::Adjacent) << verdict.explanation;
                 EXPECT_EQ(verdict.reason, LinkReason::Neighbours);
@@ -65,10 +49,10 @@ TEST(RandomSkins, FlatOnesAreAllNeighboursWhateverTheShape) {
 TEST(RandomSkins, BendsAndTwistsAreCutAtTheLimits) {
     Random random(2, "limits");
     const CableOptions options;
-    FlatSkin flat = growFlatSkin(random, paperHexagon(), 2);
+    KnownSkin flat = growFlatSkin(random, paperHexagon(), 2);
     const SkinGraph graph = buildSkinGraph(flat.skin);
     ASSERT_EQ(graph.links().size(), 1U);
-    CableEvidence evidence = rotationEvidence(graph, flat.T_r_u, random);
+    CableEvidence evidence = rotationEvidence(graph, flat.T_s_u, random);
     const Matrix3d R_flat = *evidence.R_a_b[0];
     int cables = 0;
     for (int i = 0; i < 1000; ++i) {

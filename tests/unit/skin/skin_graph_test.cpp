@@ -105,7 +105,7 @@ TEST(SkinGraph, NotesThePortThatIsWiredToTheComputer) {
 }
 
 TEST(SkinGraph, MirrorsTheNetwork) {
-    for (const test::KnownSkin& grid : {test::hexagonGrid(5, 4), test::rectangleGrid(3, 6), test::triangleGrid(4, 3)}) {
+    for (const KnownSkin& grid : {test::hexagonGrid(5, 4), test::rectangleGrid(3, 6), test::triangleGrid(4, 3)}) {
         const SkinGraph graph = buildSkinGraph(grid.skin);
         EXPECT_EQ(graph.links().size(), grid.skin.links.size());
         EXPECT_EQ(boost::num_vertices(graph.graph()), grid.skin.modules.size());

@@ -7,12 +7,6 @@
 namespace skincal {
 namespace {
 
-template <class T>
-void shuffle(Random& random, std::vector<T>& values) {
-    for (std::size_t i = values.size(); i > 1; --i)
-        std::swap(values[i - 1], values[random.index(i)]);
-}
-
 /// The port at which a neighbour in the tiling meets `port`: opposite where the template has one, else the same.
 std::size_t partnerOf(const ModuleTemplate& type, std::size_t port) {
     for (std::size_t q = 0; q < type.ports.size(); ++q) {
@@ -33,24 +27,24 @@ std::vector<unsigned> randomIds(Random& random, std::size_t count) {
     return ids;
 }
 
-FlatSkin growFlatSkin(Random& random, const ModuleTemplate& type, std::size_t modules) {
+KnownSkin growFlatSkin(Random& random, const ModuleTemplate& type, std::size_t modules) {
     constexpr double touching = 1e-5;
-    FlatSkin flat;
+    KnownSkin flat;
     flat.skin.templates = {type};
     const std::vector<unsigned> ids = randomIds(random, modules);
     const auto place = [&](const Isometry3d& T_r_u) {
-        flat.skin.modules.push_back({ModuleId(ids[flat.T_r_u.size()]), 0});
-        flat.T_r_u.push_back(T_r_u);
+        flat.skin.modules.push_back({ModuleId(ids[flat.T_s_u.size()]), 0});
+        flat.T_s_u.push_back(T_r_u);
     };
     place(makeIsometry(random.rotation(), random.normal3()));
-    while (flat.T_r_u.size() < modules) {
-        const Isometry3d T_r_u = flat.T_r_u[random.index(flat.T_r_u.size())];
+    while (flat.T_s_u.size() < modules) {
+        const Isometry3d T_r_u = flat.T_s_u[random.index(flat.T_s_u.size())];
         const std::size_t port = random.index(type.ports.size());
         const Vector3d& p_u = type.ports[port];
         const Vector3d& p_n = type.ports[partnerOf(type, port)];
         const Matrix3d R_u_n = flatNeighbourRotation(p_u, p_n);
         const Isometry3d T_r_n = T_r_u * makeIsometry(R_u_n, p_u - R_u_n * p_n);
-        const bool taken = std::any_of(flat.T_r_u.begin(), flat.T_r_u.end(), [&](const Isometry3d& T) {
+        const bool taken = std::any_of(flat.T_s_u.begin(), flat.T_s_u.end(), [&](const Isometry3d& T) {
             return (T.translation() - T_r_n.translation()).norm() < type.portRadius();
         });
         if (!taken)
@@ -60,7 +54,7 @@ FlatSkin growFlatSkin(Random& random, const ModuleTemplate& type, std::size_t mo
         for (std::size_t n = 0; n < u; ++n) {
             for (std::size_t p = 0; p < type.ports.size(); ++p) {
                 for (std::size_t q = 0; q < type.ports.size(); ++q) {
-                    if ((flat.T_r_u[u] * type.ports[p] - flat.T_r_u[n] * type.ports[q]).norm() < touching) {
+                    if ((flat.T_s_u[u] * type.ports[p] - flat.T_s_u[n] * type.ports[q]).norm() < touching) {
                         flat.skin.links.push_back({flat.skin.modules[u].id, static_cast<int>(p),
                                                    flat.skin.modules[n].id, static_cast<int>(q)});
                     }
@@ -123,6 +117,22 @@ CableEvidence rotationEvidence(const SkinGraph& graph, const std::vector<Isometr
         evidence.R_a_b[l] = R_a_b * so3Exp(random.direction() * random.uniform(0, error));
     }
     return evidence;
+}
+
+std::vector<std::vector<int>> allDistances(std::size_t size,
+                                           const std::vector<std::pair<std::size_t, std::size_t>>& edges) {
+    std::vector<std::vector<int>> d(size, std::vector<int>(size, 1'000'000));
+    for (std::size_t i = 0; i < size; ++i)
+        d[i][i] = 0;
+    for (const auto& [a, b] : edges)
+        d[a][b] = d[b][a] = std::min(d[a][b], 1);
+    for (std::size_t k = 0; k < size; ++k) {
+        for (std::size_t i = 0; i < size; ++i) {
+            for (std::size_t j = 0; j < size; ++j)
+                d[i][j] = std::min(d[i][j], d[i][k] + d[k][j]);
+        }
+    }
+    return d;
 }
 
 std::vector<Patch> patchesOf(const Skin& skin) {

@@ -156,7 +156,7 @@ TEST(PaperColours, AFlickerInOneOfThreeFramesIsNoLed) {
     scan.leds[0].peak = 0;
     const Vector2d there = scan.leds[0].pixel;
     scan.disturb = [&](cv::Mat& light, std::size_t k) {
-        if (k == 3)
+        if (k == 1)
             addSpot(light, there, 150, 1.7);
     };
     const ViewDetections view = detect(scan);
@@ -164,8 +164,7 @@ TEST(PaperColours, AFlickerInOneOfThreeFramesIsNoLed) {
     EXPECT_EQ(view.undetected.at(0).reason, "no blob of its colour");
     // Alone, the frame with the flicker cannot be told from one with the LED.
     auto told = scan.frames;
-    told[1].lit.clear();
-    told[5].lit.clear();
+    told.resize(3);
     EXPECT_EQ(detect(scan, {}, told).found.size(), 2U);
 }
 

@@ -52,18 +52,21 @@ class Problem {
         addLinks(start);
     }
 
-    /// Holds the gauge; false where the fixed pose takes no part.
-    bool fix(std::optional<std::size_t> view, std::optional<std::size_t> module) {
-        PoseBlocks* pose = view ? &views_[*view] : (module ? &modules_[*module] : nullptr);
-        if (pose == nullptr)
-            return false;
+    /// Holds the gauge; false where nothing of it takes part.
+    bool fix(const Gauge& gauge) {
         bool any = false;
-        for (double* block : {pose->q.data(), pose->t.data()}) {
-            if (problem_.HasParameterBlock(block)) {
-                problem_.SetParameterBlockConstant(block);
-                any = true;
+        const auto hold = [&](PoseBlocks& pose) {
+            for (double* block : {pose.q.data(), pose.t.data()}) {
+                if (problem_.HasParameterBlock(block)) {
+                    problem_.SetParameterBlockConstant(block);
+                    any = true;
+                }
             }
-        }
+        };
+        for (const std::size_t v : gauge.views)
+            hold(views_[v]);
+        for (const std::size_t u : gauge.modules)
+            hold(modules_[u]);
         return any;
     }
 
@@ -221,15 +224,13 @@ BodyState withUpDirections(const AdjustmentInput& input, BodyState state) {
 
 tl::expected<Eigen::MatrixXd, CalibrationError> poseBound(const AdjustmentInput& input, const BodyState& truth,
                                                           const std::vector<std::size_t>& which, bool ofViews,
-                                                          std::optional<std::size_t> fixedView,
-                                                          std::optional<std::size_t> fixedModule,
-                                                          AdjustmentOptions options) {
+                                                          const Gauge& gauge, AdjustmentOptions options) {
     options.pixelLoss = options.gravityLoss = options.linkLoss = 0;
     requireConsistent(input, truth, options);
     const BodyState state = withUpDirections(input, truth);
     Problem problem(input, state, options);
     const tl::unexpected<CalibrationError> degenerate(CalibrationError{ErrorCode::DegeneratePoints, {}});
-    if (!problem.fix(fixedView, fixedModule))
+    if (!problem.fix(gauge))
         return degenerate;
 
     std::vector<const double*> blocks;
@@ -277,12 +278,30 @@ std::optional<Vector2d> pixelResidual(const AdjustmentInput& input, const BodySt
     return observation.pixel - *predicted;
 }
 
+std::vector<Vector3d> gravityResiduals(const AdjustmentInput& input, const BodyState& state, std::size_t module,
+                                       double gravity) {
+    std::vector<Vector3d> residuals;
+    const auto& T_r_u = state.T_r_u[module];
+    if (!T_r_u)
+        return residuals;
+    const AccelerometerCalibration& c = state.accelerometers[module];
+    for (const GravityTable::Entry& entry : input.gravity->of(module)) {
+        const auto& up = state.up_r[input.gravityGroup[module]][entry.pose];
+        if (!up)
+            continue;
+        const Vector3d a = gravity * (T_r_u->linear().transpose() * *up);
+        residuals.emplace_back(entry.acceleration - c.bias - c.scale.cwiseProduct(a));
+    }
+    return residuals;
+}
+
 void estimateUpDirections(const AdjustmentInput& input, BodyState& state) {
     std::size_t groups = 0;
     for (const std::size_t g : input.gravityGroup)
         groups = std::max(groups, g + 1);
     const std::size_t poses = input.gravity->poseCount();
     std::vector<std::vector<Vector3d>> sum(groups, std::vector<Vector3d>(poses, Vector3d::Zero()));
+    std::vector<std::vector<bool>> told(groups, std::vector<bool>(poses, false));
     for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
         if (!state.T_r_u[u])
             continue;
@@ -290,33 +309,29 @@ void estimateUpDirections(const AdjustmentInput& input, BodyState& state) {
         for (const GravityTable::Entry& entry : input.gravity->of(u)) {
             const Vector3d a = (entry.acceleration - calibration.bias).cwiseQuotient(calibration.scale);
             sum[input.gravityGroup[u]][entry.pose] += state.T_r_u[u]->linear() * a;
+            told[input.gravityGroup[u]][entry.pose] = true;
         }
     }
     state.up_r.assign(groups, std::vector<std::optional<Vector3d>>(poses));
     for (std::size_t g = 0; g < groups; ++g) {
         for (std::size_t p = 0; p < poses; ++p) {
-            if (sum[g][p].norm() > 1e-9)
-                state.up_r[g][p] = sum[g][p].normalized();
+            if (!told[g][p])
+                continue;
+            // Readings may sum to nothing along a pose; such a direction is any.
+            state.up_r[g][p] = sum[g][p].norm() > 1e-9 ? Vector3d(sum[g][p].normalized()) : Vector3d(0, 0, 1);
         }
     }
 }
 
 tl::expected<AdjustmentResult, CalibrationError> adjustBody(const AdjustmentInput& input, BodyState start,
-                                                            std::optional<std::size_t> fixedView,
-                                                            std::optional<std::size_t> fixedModule,
-                                                            const AdjustmentOptions& options,
+                                                            const Gauge& gauge, const AdjustmentOptions& options,
                                                             const RunContext& context) {
     requireConsistent(input, start, options);
     if (context.isCancelled())
         return tl::unexpected(CalibrationError{ErrorCode::Cancelled, {}});
     BodyState state = withUpDirections(input, std::move(start));
-    // Readings may sum to nothing along a pose; such a direction starts anywhere.
-    for (auto& group : state.up_r) {
-        for (auto& up : group)
-            up = up.value_or(Vector3d::UnitZ());
-    }
     Problem problem(input, state, options);
-    if (!problem.fix(fixedView, fixedModule))
+    if (!problem.fix(gauge))
         return tl::unexpected(CalibrationError{ErrorCode::TooFewPoints, {}});
 
     ceres::Solver::Options solver;
@@ -347,19 +362,15 @@ tl::expected<AdjustmentResult, CalibrationError> adjustBody(const AdjustmentInpu
 }
 
 tl::expected<Eigen::MatrixXd, CalibrationError> viewPoseBound(const AdjustmentInput& input, const BodyState& truth,
-                                                              const std::vector<std::size_t>& views,
-                                                              std::optional<std::size_t> fixedView,
-                                                              std::optional<std::size_t> fixedModule,
+                                                              const std::vector<std::size_t>& views, const Gauge& gauge,
                                                               AdjustmentOptions options) {
-    return poseBound(input, truth, views, true, fixedView, fixedModule, options);
+    return poseBound(input, truth, views, true, gauge, options);
 }
 
 tl::expected<Eigen::MatrixXd, CalibrationError> modulePoseBound(const AdjustmentInput& input, const BodyState& truth,
                                                                 const std::vector<std::size_t>& modules,
-                                                                std::optional<std::size_t> fixedView,
-                                                                std::optional<std::size_t> fixedModule,
-                                                                AdjustmentOptions options) {
-    return poseBound(input, truth, modules, false, fixedView, fixedModule, options);
+                                                                const Gauge& gauge, AdjustmentOptions options) {
+    return poseBound(input, truth, modules, false, gauge, options);
 }
 
 }  // namespace skincal

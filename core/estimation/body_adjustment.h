@@ -78,33 +78,47 @@ struct AdjustmentResult {
     AdjustmentSummary summary;
 };
 
+/// Poses that keep their value while the rest is estimated. Each connected part of the body needs one.
+struct Gauge {
+    std::vector<std::size_t> views{};
+    std::vector<std::size_t> modules{};
+};
+
 /// Least squares over pixels, gravity and link points at once (Ceres, sparse Cholesky):
 ///   min  sum rho(|z - project(T_r_v^-1 T_r_u led)|^2/s^2) + sum rho(|a - (s g R_r_u^T up + b)|^2/s^2)
 ///      + sum rho(|T_r_a p_a - T_r_b p_b|^2/s^2) + priors on bias and scale
-/// Gauge: `fixedView`, else `fixedModule`, keeps its pose; one of them must have one. With a fixed view the scale
-/// still comes from the ports and LED offsets of the modules.
-/// Fails with Cancelled, NotConverged (no usable step), TooFewPoints (nothing to adjust).
+/// The scale comes from the ports and LED offsets of the modules. Up directions are those that some reading of a placed
+/// module tells, and no others.
+/// Fails with Cancelled, NotConverged (no usable step), TooFewPoints (nothing of the gauge takes part).
 [[nodiscard]] tl::expected<AdjustmentResult, CalibrationError> adjustBody(const AdjustmentInput& input, BodyState start,
-                                                                          std::optional<std::size_t> fixedView,
-                                                                          std::optional<std::size_t> fixedModule,
+                                                                          const Gauge& gauge,
                                                                           const AdjustmentOptions& options = {},
                                                                           const RunContext& context = {});
 
 /// Cramer-Rao bound at `truth`: covariance (rotation vector in the body frame, then translation; rad, m) of the poses
 /// of the given views, in the order given, as one matrix. Plain least squares, same gauge rules as adjustBody.
 /// Fails with DegeneratePoints where the data do not fix all unknowns.
-[[nodiscard]] tl::expected<Eigen::MatrixXd, CalibrationError> viewPoseBound(
-    const AdjustmentInput& input, const BodyState& truth, const std::vector<std::size_t>& views,
-    std::optional<std::size_t> fixedView, std::optional<std::size_t> fixedModule, AdjustmentOptions options = {});
+[[nodiscard]] tl::expected<Eigen::MatrixXd, CalibrationError> viewPoseBound(const AdjustmentInput& input,
+                                                                            const BodyState& truth,
+                                                                            const std::vector<std::size_t>& views,
+                                                                            const Gauge& gauge,
+                                                                            AdjustmentOptions options = {});
 
 /// The same for modules.
-[[nodiscard]] tl::expected<Eigen::MatrixXd, CalibrationError> modulePoseBound(
-    const AdjustmentInput& input, const BodyState& truth, const std::vector<std::size_t>& modules,
-    std::optional<std::size_t> fixedView, std::optional<std::size_t> fixedModule, AdjustmentOptions options = {});
+[[nodiscard]] tl::expected<Eigen::MatrixXd, CalibrationError> modulePoseBound(const AdjustmentInput& input,
+                                                                              const BodyState& truth,
+                                                                              const std::vector<std::size_t>& modules,
+                                                                              const Gauge& gauge,
+                                                                              AdjustmentOptions options = {});
 
 /// Residual measured minus predicted of one detection, px; nothing where a pose is missing or the LED lies behind.
 [[nodiscard]] std::optional<Vector2d> pixelResidual(const AdjustmentInput& input, const BodyState& state,
                                                     const PixelObservation& observation);
+
+/// Residuals of all calibrated readings of module u whose pose has an up direction, m/s^2:
+///   a - (s g R_r_u^T up + b)
+[[nodiscard]] std::vector<Vector3d> gravityResiduals(const AdjustmentInput& input, const BodyState& state,
+                                                     std::size_t module, double gravity = kStandardGravity);
 
 /// Up directions that fit the accelerometers best, given module rotations and calibrations: fills state.up_r.
 void estimateUpDirections(const AdjustmentInput& input, BodyState& state);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/statistics.h"
+
 namespace skincal {
 namespace {
 
@@ -12,14 +14,15 @@ double rootMean(double squares, std::size_t count) {
     return std::sqrt(squares / static_cast<double>(count));
 }
 
-void addModules(const Measurements& m, const SkinLayout& layout, const BodyEstimate& estimate, BodyModel& body) {
+void addModules(const Measurements& m, const GravityTable& gravity, const SkinLayout& layout,
+                const BodyEstimate& estimate, BodyModel& body) {
     body.modules.resize(m.skin.modules.size());
     for (std::size_t u = 0; u < body.modules.size(); ++u) {
         BodyModule& module = body.modules[u];
         module.id = m.skin.modules[u].id;
         module.type = m.skin.templateOf(u).name;
         module.T_body_module = estimate.T_r_u[u];
-        if (!estimate.accelerometers.empty())
+        if (!estimate.accelerometers.empty() && !gravity.of(u).empty())
             module.accelerometer = estimate.accelerometers[u];
     }
     for (std::size_t k = 0; k < layout.patches.size(); ++k) {
@@ -66,8 +69,8 @@ void addLinks(const Measurements& m, const SkinLayout& layout, const BodyEstimat
         const auto& T_r_a = estimate.T_r_u[link.a];
         const auto& T_r_b = estimate.T_r_u[link.b];
         if (T_r_a && T_r_b) {
-            const Vector3d a = *T_r_a * m.skin.templateOf(link.a).ports[static_cast<std::size_t>(link.a_port)];
-            const Vector3d b = *T_r_b * m.skin.templateOf(link.b).ports[static_cast<std::size_t>(link.b_port)];
+            const Vector3d a = *T_r_a * m.skin.port(link.a, link.a_port);
+            const Vector3d b = *T_r_b * m.skin.port(link.b, link.b_port);
             out.distance = (a - b).norm();
             if (out.kind == LinkKind::Adjacent) {
                 squares += *out.distance * *out.distance;
@@ -107,7 +110,9 @@ void addViews(const Measurements& m, const AdjustmentInput& input, const BodySta
             out.reason = estimate.rejectedReason[i];
         } else if (!out.residual) {
             out.verdict = ObservationVerdict::Rejected;
-            out.reason = estimate.T_r_v[o.view] ? "its module has no pose" : "its view has no pose";
+            out.reason = !estimate.T_r_v[o.view]     ? "its view has no pose"
+                         : !estimate.T_r_u[o.module] ? "its module has no pose"
+                                                     : "its module lies behind the camera";
         } else {
             squares[o.view] += out.residual->squaredNorm();
             ++counts[o.view];
@@ -129,28 +134,41 @@ void addViews(const Measurements& m, const AdjustmentInput& input, const BodySta
         body.quality.residual_rms_px = rootMean(allSquares, allCount);
 }
 
-void addGravityResidual(const GravityTable& gravity, const AdjustmentInput& input, BodyState state, BodyModel& body) {
+void addGravityResidual(const AdjustmentInput& input, BodyState state, BodyModel& body) {
     estimateUpDirections(input, state);
+    std::vector<double> lengths;
     double squares = 0;
     std::size_t count = 0;
     for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
-        if (!state.T_r_u[u])
-            continue;
-        const AccelerometerCalibration& c = state.accelerometers[u];
-        for (const GravityTable::Entry& entry : gravity.of(u)) {
-            const auto& up = state.up_r[input.gravityGroup[u]][entry.pose];
-            if (!up)
-                continue;
-            const Vector3d a = kStandardGravity * (state.T_r_u[u]->linear().transpose() * *up);
-            squares += (entry.acceleration - c.bias - c.scale.cwiseProduct(a)).squaredNorm();
+        for (const GravityTable::Entry& entry : input.gravity->of(u))
+            lengths.push_back(entry.acceleration.norm());
+        for (const Vector3d& r : gravityResiduals(input, state, u)) {
+            squares += r.squaredNorm();
             count += 3;
         }
     }
     if (count > 0)
         body.quality.gravity_residual_rms = rootMean(squares, count);
+    if (lengths.empty())
+        return;
+    const double typical = median(std::move(lengths));
+    if (typical < kStandardGravity / 2 || typical > kStandardGravity * 2) {
+        body.quality.trust = Trust::NotToBeTrusted;
+        body.quality.warnings.push_back(
+            fmt::format("gravity readings are {:.3g} m/s² long, gravity is {:.2f}: their unit is not m/s²", typical,
+                        kStandardGravity));
+    }
 }
 
-void judge(BodyModel& body) {
+// Residuals beyond which a result is merely usable, and not even that: px, m, m/s^2, rms.
+constexpr double kPixelGood = 1;
+constexpr double kPixelUsable = 5;
+constexpr double kLinkGood = 1.5e-3;
+constexpr double kLinkUsable = 5e-3;
+constexpr double kGravityGood = 0.15;
+constexpr double kGravityUsable = 0.5;
+
+void judge(BodyModel& body, Trust trustAtMost) {
     BodyQuality& quality = body.quality;
     quality.modulesTotal = body.modules.size();
     quality.modulesPlaced = static_cast<std::size_t>(std::count_if(
@@ -167,13 +185,20 @@ void judge(BodyModel& body) {
         quality.warnings.push_back(fmt::format("{} of {} detections rejected", rejected, used + rejected));
     const double residual = quality.residual_rms_px.value_or(0);
     const double gap = quality.link_mismatch_rms.value_or(0);
-    const bool half = 2 * rejected > used;
-    if (quality.modulesPlaced == 0 || residual > 5 || gap > 5e-3 || half)
+    const double gravity = quality.gravity_residual_rms.value_or(0);
+    if (gravity > kGravityUsable)
+        quality.warnings.push_back(fmt::format(
+            "gravity readings are off by {:.2f} m/s² rms: the body shook in its poses, or a joint moved", gravity));
+    const Trust before = std::max(quality.trust, trustAtMost);
+    if (quality.modulesPlaced == 0 || residual > kPixelUsable || gap > kLinkUsable || gravity > kGravityUsable ||
+        2 * rejected > used)
         quality.trust = Trust::NotToBeTrusted;
-    else if (quality.modulesPlaced < quality.modulesTotal || residual > 1 || gap > 1.5e-3 || rejected * 4 > used)
+    else if (quality.modulesPlaced < quality.modulesTotal || residual > kPixelGood || gap > kLinkGood ||
+             gravity > kGravityGood || rejected * 4 > used)
         quality.trust = Trust::Usable;
     else
         quality.trust = Trust::Good;
+    quality.trust = std::max(quality.trust, before);
 }
 
 }  // namespace
@@ -206,12 +231,12 @@ BodyModel assembleBody(const Measurements& measurements, const GravityTable& gra
     state.T_r_v = estimate.T_r_v;
     state.accelerometers = estimate.accelerometers;
     state.accelerometers.resize(state.T_r_u.size());
-    addModules(measurements, layout, estimate, body);
+    addModules(measurements, gravity, layout, estimate, body);
     addPatches(measurements, layout, estimate, body);
     addLinks(measurements, layout, estimate, body);
     addViews(measurements, input, state, estimate, body);
-    addGravityResidual(gravity, input, state, body);
-    judge(body);
+    addGravityResidual(input, state, body);
+    judge(body, estimate.trustAtMost);
     return body;
 }
 

@@ -20,13 +20,14 @@ struct BodyEstimate {
     std::vector<PatchShape> shapes;                        ///< per patch
     std::vector<std::string> patchStatus;                  ///< per patch: "placed", or why not
     std::vector<std::string> viewStatus;                   ///< per view
-    std::vector<std::vector<std::size_t>> patchViews;      ///< per patch: views whose picture gave it a pose
+    std::vector<std::vector<std::size_t>> patchViews;      ///< per patch: views that have a say in its pose
     std::vector<AccelerometerCalibration> accelerometers;  ///< per module; empty where not estimated
     std::vector<bool> rejected;                            ///< per entry of AdjustmentInput::pixels
     std::vector<std::string> rejectedReason;               ///< likewise
     std::map<std::string, double> condition;
     std::vector<std::string> warnings;
     std::vector<std::string> missing;
+    Trust trustAtMost = Trust::Good;  ///< where the method knows of a reason for doubt
 };
 
 /// All detections of known modules, in the order of the views.

@@ -32,7 +32,7 @@ struct BodyPatch {
     ModuleId origin;
     std::vector<ModuleId> modules;
     std::optional<Isometry3d> T_body_patch;
-    std::vector<std::string> views;  ///< those whose picture gave this patch a pose
+    std::vector<std::string> views;  ///< those that have a say in this patch's pose
     std::string status;              ///< "placed", or why not
 };
 

@@ -6,8 +6,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "core/estimation/edge_rotation.h"
-
 namespace skincal {
 namespace {
 
@@ -34,7 +32,8 @@ double disagreement(const std::vector<SightingCandidates>& sightings, const View
     return cost;
 }
 
-void selectByGravity(const std::vector<SightingCandidates>& sightings, const View& view,
+/// False where fewer than two patches of the view have a say.
+bool selectByGravity(const std::vector<SightingCandidates>& sightings, const View& view,
                      const std::vector<std::optional<Matrix3d>>& R_g_o, const SelectionOptions& options,
                      std::vector<Selection>& selections) {
     double best = std::numeric_limits<double>::infinity();
@@ -55,7 +54,7 @@ void selectByGravity(const std::vector<SightingCandidates>& sightings, const Vie
         }
     }
     if (voters < 2 || !R_v_g)
-        return;
+        return false;
     for (const std::size_t s : view) {
         const auto& R = R_g_o[sightings[s].patch];
         if (!R)
@@ -70,11 +69,14 @@ void selectByGravity(const std::vector<SightingCandidates>& sightings, const Vie
             }
         }
     }
+    return true;
 }
 
-/// Votes of other views for the relative rotations that each candidate implies.
+/// Votes of other views for the relative rotations that each candidate of an open sighting implies. Quadratic in the
+/// views that show a pair of patches: not for sightings that gravity decides.
 std::vector<std::vector<double>> votesAcrossViews(const std::vector<SightingCandidates>& sightings,
-                                                  const std::map<std::size_t, View>& views, double limit) {
+                                                  const std::map<std::size_t, View>& views,
+                                                  const std::vector<bool>& open, double limit) {
     struct Statement {
         std::size_t view, sightingA, candidateA, sightingB, candidateB;
         Matrix3d R_a_b;
@@ -99,6 +101,8 @@ std::vector<std::vector<double>> votesAcrossViews(const std::vector<SightingCand
         votes[s].assign(sightings[s].poses.size(), 0);
     for (const auto& [pair, statements] : byPair) {
         for (const Statement& mine : statements) {
+            if (!open[mine.sightingA] && !open[mine.sightingB])
+                continue;
             std::map<std::size_t, double> support;  // the best of each other view counts once
             for (const Statement& other : statements) {
                 if (other.view == mine.view)
@@ -128,12 +132,20 @@ std::vector<Selection> selectCandidates(const std::vector<SightingCandidates>& s
         if (!sightings[s].poses.empty())
             views[sightings[s].view].push_back(s);
     }
-    const auto votes = votesAcrossViews(sightings, views, options.maxDisagreement_rad);
-
     std::vector<Selection> selections(sightings.size());
+    std::vector<bool> open(sightings.size(), false);
+    for (const auto& [v, view] : views) {
+        if (!selectByGravity(sightings, view, R_g_o, options, selections)) {
+            for (const std::size_t s : view)
+                open[s] = true;
+        }
+        for (const std::size_t s : view)
+            open[s] = open[s] || !R_g_o[sightings[s].patch];
+    }
+    const auto votes = votesAcrossViews(sightings, views, open, options.maxDisagreement_rad);
     for (std::size_t s = 0; s < sightings.size(); ++s) {
         const auto& poses = sightings[s].poses;
-        if (poses.empty())
+        if (poses.empty() || !open[s])
             continue;
         std::size_t best = 0;
         for (std::size_t k = 1; k < poses.size(); ++k) {
@@ -147,49 +159,7 @@ std::vector<Selection> selectCandidates(const std::vector<SightingCandidates>& s
                 selections[s].undecided = true;
         }
     }
-    for (const auto& [v, view] : views)
-        selectByGravity(sightings, view, R_g_o, options, selections);
     return selections;
-}
-
-GravityFrame alignPatchesByGravity(const std::vector<std::vector<std::optional<Vector3d>>>& up_o,
-                                   double maxDisagreement_rad) {
-    GravityFrame frame;
-    frame.R_g_o.resize(up_o.size());
-    // The reference is the patch that knows the most poses.
-    std::size_t reference = 0;
-    std::size_t mostPoses = 0;
-    for (std::size_t k = 0; k < up_o.size(); ++k) {
-        const auto known = static_cast<std::size_t>(
-            std::count_if(up_o[k].begin(), up_o[k].end(), [](const auto& up) { return up.has_value(); }));
-        if (known > mostPoses) {
-            mostPoses = known;
-            reference = k;
-        }
-    }
-    if (mostPoses < 2)
-        return frame;
-    double squares = 0;
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < up_o.size(); ++k) {
-        std::vector<Vector3d> g;
-        std::vector<Vector3d> o;
-        for (std::size_t p = 0; p < up_o[k].size(); ++p) {
-            if (up_o[k][p] && up_o[reference][p]) {
-                g.push_back(*up_o[reference][p]);
-                o.push_back(*up_o[k][p]);
-            }
-        }
-        const auto rotation = estimateRelativeRotation(g, o);
-        // Unit vectors: the residual is an angle.
-        if (!rotation || rotation->residual_rms > maxDisagreement_rad)
-            continue;
-        frame.R_g_o[k] = rotation->R_c_n;
-        squares += rotation->residual_rms * rotation->residual_rms;
-        ++count;
-    }
-    frame.disagreement_rad = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
-    return frame;
 }
 
 }  // namespace skincal

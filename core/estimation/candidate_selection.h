@@ -38,15 +38,4 @@ struct Selection {
                                                       const std::vector<std::optional<Matrix3d>>& R_g_o,
                                                       const SelectionOptions& options = {});
 
-struct GravityFrame {
-    std::vector<std::optional<Matrix3d>> R_g_o;  ///< per patch
-    double disagreement_rad = 0;                 ///< rms over patches and poses
-};
-
-/// A common frame for all patches from what gravity looked like to each in the same poses. Patches whose directions
-/// can't be turned into the others' (the body's joints moved between poses, or the poses are too alike) have none.
-/// @param up_o  [patch][pose], unit vectors in the patch's frame.
-[[nodiscard]] GravityFrame alignPatchesByGravity(const std::vector<std::vector<std::optional<Vector3d>>>& up_o,
-                                                 double maxDisagreement_rad = 3 * kDegree);
-
 }  // namespace skincal

@@ -1,21 +1,18 @@
 #include "core/estimation/edge_rotation.h"
 
-#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 namespace skincal {
 
 double gravitySpread(std::span<const Vector3d> g) {
-    Matrix3d S = Matrix3d::Zero();
-    for (const Vector3d& v : g) {
-        if (v.norm() > 1e-9)
-            S += v.normalized() * v.normalized().transpose();
+    double largest = 0;
+    for (std::size_t i = 0; i < g.size(); ++i) {
+        for (std::size_t k = i + 1; k < g.size(); ++k)
+            largest = std::max(largest, std::atan2(g[i].cross(g[k]).norm(), std::abs(g[i].dot(g[k]))));
     }
-    const Vector3d eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix3d>(S).eigenvalues();
-    if (eigenvalues[2] <= 0)
-        return 0;
-    return std::asin(std::sqrt(std::max(0.0, eigenvalues[1] / eigenvalues[2])));
+    return largest;
 }
 
 tl::expected<RelativeRotation, CalibrationError> estimateRelativeRotation(std::span<const Vector3d> g_c,
@@ -25,8 +22,9 @@ tl::expected<RelativeRotation, CalibrationError> estimateRelativeRotation(std::s
         throw std::logic_error("RelativeRotationOptions out of range");
     if (g_c.size() != g_n.size())
         return tl::unexpected(CalibrationError{ErrorCode::SizeMismatch, {{"c", g_c.size()}, {"n", g_n.size()}}});
-    if (g_c.size() < 2)
-        return tl::unexpected(CalibrationError{ErrorCode::TooFewPoses, {{"found", g_c.size()}, {"needed", 2}}});
+    if (g_c.size() < static_cast<std::size_t>(options.minPoses))
+        return tl::unexpected(
+            CalibrationError{ErrorCode::TooFewPoses, {{"found", g_c.size()}, {"needed", options.minPoses}}});
 
     Matrix3d correlation = Matrix3d::Zero();
     for (std::size_t p = 0; p < g_c.size(); ++p) {

@@ -12,8 +12,9 @@ struct RelativeRotationOptions {
     /// Gravity must change direction by at least this much between some two poses: below it the turn about gravity is
     /// only as good as noise divided by its sine.
     double minSpread_rad = 5.0 * kDegree;
+    int minPoses = 2;  ///< the paper's P
 
-    [[nodiscard]] bool validate() const { return minSpread_rad > 0 && minSpread_rad < 1.5; }
+    [[nodiscard]] bool validate() const { return minSpread_rad > 0 && minSpread_rad < 1.5 && minPoses >= 2; }
 };
 
 struct RelativeRotation {
@@ -24,15 +25,15 @@ struct RelativeRotation {
 
 /// Rotation that takes gravity from module n to module c (paper, eq. 7-8).
 /// Minimises sum_p |R_c_n * g_n[p] - g_c[p]|^2 over SO(3) by SVD.
-/// @param g_c, g_n  same poses in the same order, m/s^2, at least 2.
+/// @param g_c, g_n  same poses in the same order, m/s^2, at least `minPoses`.
 /// Fails with TooFewPoses, SizeMismatch, NotFinite, or ParallelGravity when the poses differ only by a turn about
 /// gravity (opposite directions are parallel, too).
 /// Ref: Schoenemann, Psychometrika 31, 1966; Kabsch, Acta Cryst. A32, 1976 (det = +1).
 [[nodiscard]] tl::expected<RelativeRotation, CalibrationError> estimateRelativeRotation(
     std::span<const Vector3d> g_c, std::span<const Vector3d> g_n, const RelativeRotationOptions& options = {});
 
-/// How well a set of directions fixes a rotation: the angle whose sine is the ratio of the second to the first
-/// singular value of the unit vectors. 0 where all are parallel, 90 degrees for perfectly mixed ones.
+/// Largest angle between any two of the lines along the given vectors, [0, 90 degrees]: opposite directions are
+/// parallel. 0 for fewer than two.
 [[nodiscard]] double gravitySpread(std::span<const Vector3d> g);
 
 }  // namespace skincal

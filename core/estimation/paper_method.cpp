@@ -1,8 +1,10 @@
 #include "core/estimation/paper_method.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "core/estimation/body_assembly.h"
+#include "core/estimation/missing_data.h"
 #include "core/estimation/patch_sightings.h"
 
 namespace skincal {
@@ -52,6 +54,8 @@ void chainViews(const std::vector<PosedPatch>& posed, std::size_t views, BodyEst
 
 tl::expected<BodyModel, CalibrationError> calibratePaper(const Measurements& measurements,
                                                          const PaperMethodOptions& options, const RunContext& context) {
+    if (!options.validate())
+        throw std::logic_error("PaperMethodOptions out of range");
     const Skin& skin = measurements.skin;
     const GravityTable gravity(skin, measurements.gravity);
     const SkinLayout layout = layOutSkin(measurements, gravity, options.layout);
@@ -72,14 +76,13 @@ tl::expected<BodyModel, CalibrationError> calibratePaper(const Measurements& mea
     estimate.patchViews.resize(layout.patches.size());
 
     std::vector<PosedPatch> posed;
-    std::vector<std::size_t> mostLeds(layout.patches.size(), 0);
+    auto evidence = patchEvidence(layout, estimate.shapes, input.pixels);
     const auto sightings = collectSightings(skin, layout, estimate.shapes, input.pixels);
     for (std::size_t i = 0; i < sightings.size(); ++i) {
         const PatchSighting& sighting = sightings[i];
         if (context.isCancelled())
             return tl::unexpected(CalibrationError{ErrorCode::Cancelled, {}});
         context.report("patch poses", static_cast<double>(i) / static_cast<double>(sightings.size()));
-        mostLeds[sighting.patch] = std::max(mostLeds[sighting.patch], sighting.leds.size());
         const auto pose = estimatePatchPosePaper(sighting.leds, measurements.camera, options.pose);
         for (std::size_t k = 0; k < sighting.observations.size(); ++k) {
             if (!pose || !pose->inliers[k]) {
@@ -89,6 +92,8 @@ tl::expected<BodyModel, CalibrationError> calibratePaper(const Measurements& mea
                          : "no pose of its patch in this view: " + pose.error().message();
             }
         }
+        if (!pose && pose.error().code != ErrorCode::TooFewPoints)
+            ++evidence[sighting.patch].poseFailures[pose.error().code];
         if (pose) {
             posed.push_back({sighting.view, sighting.patch, *pose});
             estimate.patchViews[sighting.patch].push_back(sighting.view);
@@ -101,19 +106,24 @@ tl::expected<BodyModel, CalibrationError> calibratePaper(const Measurements& mea
 
     estimate.T_r_u.resize(skin.modules.size());
     estimate.patchStatus.resize(layout.patches.size());
+    std::vector<std::size_t> notHeld;
     for (std::size_t k = 0; k < layout.patches.size(); ++k) {
         const Patch& patch = layout.patches[k];
         if (!estimate.T_r_o[k]) {
             estimate.patchStatus[k] = "not seen with a placed patch";
-            estimate.missing.push_back(notSeenWithPlaced(skin, patch, mostLeds[k], options.pose.minInliers));
+            estimate.missing.push_back(whyNotPlaced(skin, patch, evidence[k], options.pose.minInliers, !posed.empty()));
             continue;
         }
         estimate.patchStatus[k] = "placed";
         for (std::size_t i = 0; i < patch.modules.size(); ++i) {
-            if (estimate.shapes[k].T_o_u[i])
+            if (!estimate.shapes[k].T_o_u[i])
+                notHeld.push_back(patch.modules[i]);
+            else
                 estimate.T_r_u[patch.modules[i]] = *estimate.T_r_o[k] * *estimate.shapes[k].T_o_u[i];
         }
     }
+    if (!notHeld.empty())
+        estimate.missing.push_back(whyNotHeld(skin, notHeld));
     for (const auto& T : estimate.T_r_v)
         estimate.viewStatus.emplace_back(T ? "placed" : "shows no placed patch well enough");
     return assembleBody(measurements, gravity, layout, input, estimate);

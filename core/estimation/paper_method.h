@@ -14,6 +14,8 @@ struct PaperMethodOptions {
     LayoutOptions layout;
     RelativeRotationOptions rotation;  ///< eq. 7-8
     PaperPoseOptions pose;             ///< eq. 14
+
+    [[nodiscard]] bool validate() const { return layout.validate() && rotation.validate() && pose.validate(); }
 };
 
 /// The method of Mittendorfer, Dean and Cheng (IROS 2014) to the letter, the baseline that ours is measured against:

@@ -142,35 +142,38 @@ void refine(const Scene& scene, const PatchPoseOptions& options, PatchPose& pose
     pose.covariance = (H + 1e-6 * Matrix6d::Identity()).inverse();
 }
 
-/// The other pose that a flat patch may have: its mean normal mirrored about the line of sight.
-PatchPose mirrored(const Scene& scene, const PatchPose& pose) {
+/// Principal axes of the LEDs: rms extents in rising order, and the directions.
+struct PrincipalAxes {
     Vector3d centre = Vector3d::Zero();
+    Vector3d extent = Vector3d::Zero();  ///< m
+    Matrix3d axes = Matrix3d::Identity();
+};
+
+PrincipalAxes principalAxes(const Scene& scene) {
+    const auto n = static_cast<double>(scene.size());
+    PrincipalAxes result;
     for (const LedCorrespondence& led : scene.leds)
-        centre += led.led_o / static_cast<double>(scene.size());
+        result.centre += led.led_o / n;
     Matrix3d spread = Matrix3d::Zero();
     for (const LedCorrespondence& led : scene.leds)
-        spread += (led.led_o - centre) * (led.led_o - centre).transpose();
-    const Vector3d normal_o = Eigen::SelfAdjointEigenSolver<Matrix3d>(spread).eigenvectors().col(0);
-    const Vector3d normal_v = pose.T_v_o.linear() * normal_o;
-    const Vector3d centre_v = pose.T_v_o * centre;
+        spread += (led.led_o - result.centre) * (led.led_o - result.centre).transpose() / n;
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(spread);
+    result.extent = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+    result.axes = solver.eigenvectors();
+    return result;
+}
+
+/// The other pose that a flat patch may have: its mean normal mirrored about the line of sight.
+PatchPose mirrored(const PrincipalAxes& shape, const PatchPose& pose) {
+    const Vector3d normal_v = pose.T_v_o.linear() * shape.axes.col(0);
+    const Vector3d centre_v = pose.T_v_o * shape.centre;
     const Vector3d sight = centre_v.normalized();
     const Vector3d mirrored_v = 2 * normal_v.dot(sight) * sight - normal_v;
     const Matrix3d turn = Quaterniond::FromTwoVectors(normal_v, mirrored_v).toRotationMatrix();
     PatchPose other;
     other.T_v_o.linear() = turn * pose.T_v_o.linear();
-    other.T_v_o.translation() = centre_v - other.T_v_o.linear() * centre;
+    other.T_v_o.translation() = centre_v - other.T_v_o.linear() * shape.centre;
     return other;
-}
-
-bool onALine(const Scene& scene) {
-    Vector3d centre = Vector3d::Zero();
-    for (const LedCorrespondence& led : scene.leds)
-        centre += led.led_o / static_cast<double>(scene.size());
-    Matrix3d spread = Matrix3d::Zero();
-    for (const LedCorrespondence& led : scene.leds)
-        spread += (led.led_o - centre) * (led.led_o - centre).transpose();
-    const Vector3d eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix3d>(spread).eigenvalues();
-    return eigenvalues[1] < 1e-3 * eigenvalues[2] || eigenvalues[2] <= 0;
 }
 
 std::vector<std::array<std::size_t, 3>> triples(std::size_t n, int limit) {
@@ -198,7 +201,8 @@ std::vector<Isometry3d> minimalPoses(const Scene& scene, const std::array<std::s
     const auto& [i, j, k] = triple;
     const Vector3d a = scene.leds[j].led_o - scene.leds[i].led_o;
     const Vector3d b = scene.leds[k].led_o - scene.leds[i].led_o;
-    if (a.cross(b).norm() < 0.05 * std::max(a.squaredNorm(), b.squaredNorm()))
+    const double longest = std::max({a.norm(), b.norm(), (a - b).norm()});
+    if (a.cross(b).norm() < 0.01 * longest * longest)
         return {};
     std::vector<cv::Point3d> object;
     std::vector<cv::Point2d> image;
@@ -208,7 +212,11 @@ std::vector<Isometry3d> minimalPoses(const Scene& scene, const std::array<std::s
     }
     std::vector<cv::Mat> rvecs;
     std::vector<cv::Mat> tvecs;
-    cv::solveP3P(object, image, cv::Matx33d::eye(), cv::noArray(), rvecs, tvecs, cv::SOLVEPNP_AP3P);
+    try {
+        cv::solveP3P(object, image, cv::Matx33d::eye(), cv::noArray(), rvecs, tvecs, cv::SOLVEPNP_AP3P);
+    } catch (const cv::Exception&) {
+        return {};  // OpenCV throws where its sample was degenerate
+    }
     std::vector<Isometry3d> poses;
     for (std::size_t s = 0; s < rvecs.size(); ++s) {
         const Isometry3d T = toPose(rvecs[s], tvecs[s]);
@@ -240,7 +248,8 @@ std::size_t PatchPose::inlierCount() const {
 
 bool PatchPoseOptions::validate() const {
     return minInliers >= 4 && minInlierShare >= 0 && minInlierShare <= 1 && shapeSigma > 0 && maxResidualSigmas > 0 &&
-           maxResidual_px > 0 && maxSamples > 0 && distinctAngle_rad > 0 && maxCostRatio >= 1 && maxCandidates > 0;
+           maxResidual_px > 0 && maxSamples > 0 && minWidthSigmas >= 0 && distinctAngle_rad > 0 && maxCostRatio >= 1 &&
+           maxCandidates > 0;
 }
 
 tl::expected<PatchPose, CalibrationError> estimatePatchPosePaper(std::span<const LedCorrespondence> leds,
@@ -248,10 +257,10 @@ tl::expected<PatchPose, CalibrationError> estimatePatchPosePaper(std::span<const
                                                                  const PaperPoseOptions& options) {
     if (!options.validate())
         throw std::logic_error("PaperPoseOptions out of range");
-    if (leds.size() < static_cast<std::size_t>(options.minInliers))
+    if (leds.size() < static_cast<std::size_t>(options.minLeds))
         return tl::unexpected(CalibrationError{
             ErrorCode::TooFewPoints,
-            {{"found", static_cast<double>(leds.size())}, {"needed", static_cast<double>(options.minInliers)}}});
+            {{"found", static_cast<double>(leds.size())}, {"needed", static_cast<double>(options.minLeds)}}});
     const Scene scene = makeScene(leds, camera);
     std::vector<cv::Point3d> object;
     std::vector<cv::Point2d> image;
@@ -266,7 +275,8 @@ tl::expected<PatchPose, CalibrationError> estimatePatchPosePaper(std::span<const
     bool ok = false;
     try {
         ok = cv::solvePnPRansac(object, image, K, cv::noArray(), rvec, tvec, false, options.iterations,
-                                static_cast<float>(options.reprojectionError_px), 0.99, inliers, cv::SOLVEPNP_EPNP);
+                                static_cast<float>(options.reprojectionError_px), options.confidence, inliers,
+                                cv::SOLVEPNP_EPNP);
     } catch (const cv::Exception&) {
         ok = false;  // OpenCV throws where its sample was degenerate
     }
@@ -300,7 +310,8 @@ tl::expected<std::vector<PatchPose>, CalibrationError> estimatePatchPoses(std::s
             ErrorCode::TooFewPoints,
             {{"found", static_cast<double>(leds.size())}, {"needed", static_cast<double>(options.minInliers)}}});
     const Scene scene = makeScene(leds, camera);
-    if (onALine(scene))
+    const PrincipalAxes shape = principalAxes(scene);
+    if (shape.extent[1] < options.minWidthSigmas * options.shapeSigma)
         return tl::unexpected(CalibrationError{ErrorCode::DegeneratePoints, {}});
 
     std::vector<PatchPose> poses;
@@ -318,7 +329,7 @@ tl::expected<std::vector<PatchPose>, CalibrationError> estimatePatchPoses(std::s
         refine(scene, options, pose);
     const std::size_t refined = poses.size();
     for (std::size_t i = 0; i < refined; ++i) {
-        PatchPose other = mirrored(scene, poses[i]);
+        PatchPose other = mirrored(shape, poses[i]);
         refine(scene, options, other);
         poses.push_back(std::move(other));
     }

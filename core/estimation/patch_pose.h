@@ -21,17 +21,24 @@ struct LedCorrespondence {
 struct PaperPoseOptions {
     int iterations = 100;  ///< of RANSAC
     double reprojectionError_px = 8.0;
-    int minInliers = 6;  ///< also the least number of LEDs
+    int minLeds = 6;  ///< N
+    int minInliers = 6;
+    double confidence = 0.99;  ///< at which RANSAC stops early; OpenCV's default, the paper says nothing
 
-    [[nodiscard]] bool validate() const { return iterations > 0 && reprojectionError_px > 0 && minInliers >= 4; }
+    [[nodiscard]] bool validate() const {
+        return iterations > 0 && reprojectionError_px > 0 && minLeds >= 4 && minInliers >= 4 && confidence > 0 &&
+               confidence < 1;
+    }
 };
 
 struct PatchPose {
     Isometry3d T_v_o = Isometry3d::Identity();
-    std::vector<bool> inliers;                   ///< per correspondence
-    double rms_px = 0;                           ///< over the inliers
-    double cost = 0;                             ///< mean of min(|residual|, limit)^2 over all correspondences, px^2
-    Matrix6d covariance = Matrix6d::Identity();  ///< rotation vector (left, camera frame) then translation, rad and m
+    std::vector<bool> inliers;  ///< per correspondence
+    double rms_px = 0;          ///< over the inliers
+    /// Mean of min(|residual|, limit)^2 over all correspondences, px^2; the paper's has only the inliers' in it.
+    double cost = 0;
+    /// Rotation vector (left, camera frame) then translation, rad and m; the paper's method gives none.
+    Matrix6d covariance = Matrix6d::Identity();
 
     [[nodiscard]] std::size_t inlierCount() const;
 };
@@ -52,7 +59,9 @@ struct PatchPoseOptions {
     double maxResidual_px = 12.0;            ///< never beyond this
     int maxSamples = 400;                    ///< of three LEDs each; all triples where there are no more
     double distinctAngle_rad = 8 * kDegree;  ///< candidates nearer than this are one
-    double maxCostRatio = 9.0;               ///< candidates worse than the best by more than this are dropped
+    /// LEDs whose distances from a line are less than this many shape sigmas (rms) have no pose.
+    double minWidthSigmas = 3.0;
+    double maxCostRatio = 9.0;  ///< candidates worse than the best by more than this are dropped
     int maxCandidates = 2;
 
     [[nodiscard]] bool validate() const;

@@ -1,19 +1,13 @@
 #include "core/estimation/patch_shape.h"
 
+#include <algorithm>
 #include <cmath>
+#include <unordered_map>
+
+#include "core/geometry/statistics.h"
 
 namespace skincal {
 namespace {
-
-std::size_t adjacentLinkCount(const SkinLayout& layout, std::size_t module) {
-    std::size_t count = 0;
-    for (std::size_t l = 0; l < layout.verdicts.size(); ++l) {
-        const GraphLink& link = layout.graph.links()[l];
-        if (layout.verdicts[l].kind == LinkKind::Adjacent && (link.a == module || link.b == module))
-            ++count;
-    }
-    return count;
-}
 
 struct TreePorts {
     Vector3d parent;
@@ -25,89 +19,107 @@ TreePorts portsOf(const Skin& skin, const SkinLayout& layout, const TreeEdge& ed
     const bool forward = link.a == edge.parent;
     const int parentPort = forward ? link.a_port : link.b_port;
     const int childPort = forward ? link.b_port : link.a_port;
-    return {skin.templateOf(edge.parent).ports[static_cast<std::size_t>(parentPort)],
-            skin.templateOf(edge.child).ports[static_cast<std::size_t>(childPort)]};
+    return {skin.port(edge.parent, parentPort), skin.port(edge.child, childPort)};
 }
 
-/// A starting shape: rotations straight from the origin's readings where both have the poses, else along the tree;
-/// the flat assumption where an accelerometer is silent.
+/// The module that the most poses were measured of, if they tell a rotation.
+std::optional<std::size_t> gravityReference(const GravityTable& gravity, const Patch& patch) {
+    std::size_t best = patch.modules.front();
+    for (const std::size_t u : patch.modules) {
+        if (gravity.of(u).size() > gravity.of(best).size())
+            best = u;
+    }
+    return gravity.relativeRotation(best, best) ? std::optional(best) : std::nullopt;
+}
+
+/// A starting shape: rotations straight from the reference's readings where both have the poses, else from those of the
+/// neighbour nearer to the origin; the flat assumption where an accelerometer is silent.
 void startShape(const Skin& skin, const SkinLayout& layout, const GravityTable& gravity, const Patch& patch,
-                BodyState& state) {
-    state.T_r_u[patch.origin] = Isometry3d::Identity();
+                BodyState& state, std::vector<bool>& assumedFlat) {
+    const auto reference = gravityReference(gravity, patch);
+    if (!reference)
+        return;
+    // In a frame that is turned as the reference is, with the origin in the middle.
+    auto& T_x_u = state.T_r_u;
+    const auto direct = [&](std::size_t u) { return gravity.relativeRotation(*reference, u); };
+    const auto fromOrigin = direct(patch.origin);
+    T_x_u[patch.origin] = makeIsometry(fromOrigin ? fromOrigin->R_c_n : Matrix3d::Identity(), Vector3d::Zero());
+    assumedFlat[patch.origin] = !fromOrigin;
     for (const TreeEdge& edge : patch.tree) {
-        if (!state.T_r_u[edge.parent])
-            continue;
-        const Isometry3d& T_o_p = *state.T_r_u[edge.parent];
+        const Isometry3d& T_x_p = *T_x_u[edge.parent];
         const TreePorts ports = portsOf(skin, layout, edge);
-        Matrix3d R_o_c;
-        if (const auto direct = gravity.relativeRotation(patch.origin, edge.child)) {
-            R_o_c = direct->R_c_n;
+        Matrix3d R_x_c;
+        if (const auto straight = direct(edge.child)) {
+            R_x_c = straight->R_c_n;
         } else if (const auto local = gravity.relativeRotation(edge.parent, edge.child)) {
-            R_o_c = T_o_p.linear() * local->R_c_n;
-        } else if (adjacentLinkCount(layout, edge.child) >= 2) {
-            R_o_c = T_o_p.linear() * flatNeighbourRotation(ports.parent, ports.child);
+            R_x_c = T_x_p.linear() * local->R_c_n;
+            assumedFlat[edge.child] = assumedFlat[edge.parent];
         } else {
-            continue;
+            R_x_c = T_x_p.linear() * flatNeighbourRotation(ports.parent, ports.child);
+            assumedFlat[edge.child] = true;
         }
-        state.T_r_u[edge.child] = makeIsometry(R_o_c, T_o_p * ports.parent - R_o_c * ports.child);
+        T_x_u[edge.child] = makeIsometry(R_x_c, T_x_p * ports.parent - R_x_c * ports.child);
     }
+    const Isometry3d T_o_x = T_x_u[patch.origin]->inverse();
+    for (const std::size_t u : patch.modules)
+        T_x_u[u] = T_o_x * *T_x_u[u];
 }
 
-/// Residuals of the calibrated readings about the state's up directions: sum of squares and how many.
-void addGravityResiduals(const AdjustmentInput& input, const BodyState& state, double& squares, std::size_t& count) {
-    for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
-        if (!state.T_r_u[u])
-            continue;
-        const AccelerometerCalibration& c = state.accelerometers[u];
-        for (const GravityTable::Entry& entry : input.gravity->of(u)) {
-            const auto& up = state.up_r[input.gravityGroup[u]][entry.pose];
-            if (!up)
-                continue;
-            const Vector3d a = kStandardGravity * (state.T_r_u[u]->linear().transpose() * *up);
-            squares += (entry.acceleration - c.bias - c.scale.cwiseProduct(a)).squaredNorm();
-            count += 3;
-        }
-    }
-}
-
-struct SolvedPatches {
-    BodyState state;  ///< each patch in its own origin's frame
+struct ShapeNoise {
     double sigma = 0;
+    std::vector<NoisyAccelerometer> noisy;
 };
 
-tl::expected<SolvedPatches, CalibrationError> solvePatches(const SkinLayout& layout, const AdjustmentInput& whole,
-                                                           const BodyState& start, const AdjustmentOptions& options,
-                                                           const RunContext& context) {
-    SolvedPatches solved{start, 0};
-    solved.state.up_r.assign(layout.patches.size(), std::vector<std::optional<Vector3d>>(whole.gravity->poseCount()));
-    double squares = 0;
-    std::size_t readings = 0;
+/// Noise of the bulk from the median residual, and the modules that stick out.
+ShapeNoise shapeNoise(const SkinLayout& layout, const AdjustmentInput& input, const BodyState& state) {
+    ShapeNoise noise;
+    std::vector<double> sizes;
+    std::vector<double> meanSquare(state.T_r_u.size(), 0);
     std::size_t unknowns = 0;
-    for (std::size_t k = 0; k < layout.patches.size(); ++k) {
-        const Patch& patch = layout.patches[k];
-        context.report("reconstructing patches", static_cast<double>(k) / static_cast<double>(layout.patches.size()));
-        BodyState own = start;
-        own.T_r_u.assign(own.T_r_u.size(), std::nullopt);
-        for (const std::size_t u : patch.modules)
-            own.T_r_u[u] = start.T_r_u[u];
-        const auto result = adjustBody(whole, own, std::nullopt, patch.origin, options, context);
-        if (!result && result.error().code == ErrorCode::Cancelled)
-            return tl::unexpected(result.error());
-        if (!result)
-            continue;  // a lone module without readings: it stays where it is
-        for (const std::size_t u : patch.modules) {
-            solved.state.T_r_u[u] = result->state.T_r_u[u];
-            solved.state.accelerometers[u] = result->state.accelerometers[u];
+    for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
+        const auto residuals = gravityResiduals(input, state, u);
+        for (const Vector3d& r : residuals) {
+            for (const double component : r)
+                sizes.push_back(std::abs(component));
+            meanSquare[u] += r.squaredNorm() / (3.0 * static_cast<double>(residuals.size()));
         }
-        solved.state.up_r[k] = result->state.up_r[k];
-        const std::size_t before = readings;
-        addGravityResiduals(whole, result->state, squares, readings);
-        if (readings > before)
-            unknowns += 9 * patch.modules.size() + 2 * whole.gravity->poseCount();
+        unknowns += residuals.empty() ? 0 : 9;
     }
-    if (readings > unknowns)
-        solved.sigma = std::sqrt(squares / static_cast<double>(readings - unknowns));
-    return solved;
+    for (std::size_t k = 0; k < layout.patches.size(); ++k)
+        unknowns += 2 * static_cast<std::size_t>(std::count_if(state.up_r[k].begin(), state.up_r[k].end(),
+                                                               [](const auto& up) { return up.has_value(); }));
+    if (sizes.size() <= unknowns)
+        return noise;
+    const double freedom = static_cast<double>(sizes.size() - unknowns) / static_cast<double>(sizes.size());
+    // Of a normal distribution, half lies within 0.6745 sigma.
+    noise.sigma = median(std::move(sizes)) / 0.6745 / std::sqrt(freedom);
+    constexpr double kSticksOut = 4;
+    for (std::size_t u = 0; u < meanSquare.size(); ++u) {
+        const double own = std::sqrt(meanSquare[u] / freedom);
+        if (own > kSticksOut * noise.sigma)
+            noise.noisy.push_back({u, own});
+    }
+    // Where many stick out, it is not their accelerometers.
+    if (10 * noise.noisy.size() > meanSquare.size() + 10)
+        noise.noisy.clear();
+    return noise;
+}
+
+/// All patches at once: nothing joins them, and each keeps its origin.
+tl::expected<BodyState, CalibrationError> solvePatches(const SkinLayout& layout, const AdjustmentInput& input,
+                                                       const BodyState& start, const AdjustmentOptions& options,
+                                                       const RunContext& context) {
+    Gauge origins;
+    for (const Patch& patch : layout.patches)
+        origins.modules.push_back(patch.origin);
+    auto result = adjustBody(input, start, origins, options, context);
+    if (result)
+        return std::move(result->state);
+    if (result.error().code == ErrorCode::Cancelled)
+        return tl::unexpected(result.error());
+    BodyState same = start;  // nothing measured takes part
+    estimateUpDirections(input, same);
+    return same;
 }
 
 }  // namespace
@@ -118,27 +130,29 @@ std::vector<PortPair> adjacentPorts(const Skin& skin, const SkinLayout& layout) 
         const GraphLink& link = layout.graph.links()[l];
         if (layout.verdicts[l].kind != LinkKind::Adjacent)
             continue;
-        pairs.push_back({link.a, link.b, skin.templateOf(link.a).ports[static_cast<std::size_t>(link.a_port)],
-                         skin.templateOf(link.b).ports[static_cast<std::size_t>(link.b_port)]});
+        pairs.push_back({link.a, link.b, skin.port(link.a, link.a_port), skin.port(link.b, link.b_port)});
     }
     return pairs;
 }
 
 PatchShape chainPatchShape(const Skin& skin, const SkinLayout& layout, const GravityTable& gravity, const Patch& patch,
                            const RelativeRotationOptions& options) {
-    std::vector<std::optional<Isometry3d>> T_o_u(skin.modules.size());
-    T_o_u[patch.origin] = Isometry3d::Identity();
+    std::unordered_map<std::size_t, Isometry3d> T_o_u;
+    T_o_u.emplace(patch.origin, Isometry3d::Identity());
     for (const TreeEdge& edge : patch.tree) {
+        const auto parent = T_o_u.find(edge.parent);
         const auto rotation = gravity.relativeRotation(edge.parent, edge.child, options);
-        if (!T_o_u[edge.parent] || !rotation)
+        if (parent == T_o_u.end() || !rotation)
             continue;
         const TreePorts ports = portsOf(skin, layout, edge);
-        T_o_u[edge.child] =
-            *T_o_u[edge.parent] * makeIsometry(rotation->R_c_n, ports.parent - rotation->R_c_n * ports.child);
+        T_o_u.emplace(edge.child,
+                      parent->second * makeIsometry(rotation->R_c_n, ports.parent - rotation->R_c_n * ports.child));
     }
     PatchShape shape;
-    for (const std::size_t u : patch.modules)
-        shape.T_o_u.push_back(T_o_u[u]);
+    for (const std::size_t u : patch.modules) {
+        const auto found = T_o_u.find(u);
+        shape.T_o_u.push_back(found == T_o_u.end() ? std::nullopt : std::optional(found->second));
+    }
     return shape;
 }
 
@@ -155,29 +169,33 @@ tl::expected<PatchShapesResult, CalibrationError> estimatePatchShapes(const Skin
     BodyState start;
     start.T_r_u.resize(skin.modules.size());
     start.accelerometers.resize(skin.modules.size());
-    for (const Patch& patch : layout.patches)
-        startShape(skin, layout, gravity, patch, start);
-
-    auto solved = solvePatches(layout, input, start, options, context);
-    if (!solved)
-        return tl::unexpected(solved.error());
-    // Once more with the noise that the residuals show, where it is not what was assumed.
-    if (solved->sigma > 0 &&
-        (solved->sigma > 1.3 * options.accelerometerSigma || solved->sigma < options.accelerometerSigma / 1.3)) {
-        options.accelerometerSigma = std::clamp(solved->sigma, 1e-3, 2.0);
-        solved = solvePatches(layout, input, solved->state, options, context);
-        if (!solved)
-            return tl::unexpected(solved.error());
-    }
-
     PatchShapesResult result;
-    result.accelerometers = solved->state.accelerometers;
-    result.up_o = solved->state.up_r;
-    result.accelerometerSigma = solved->sigma;
+    result.assumedFlat.assign(skin.modules.size(), false);
+    for (const Patch& patch : layout.patches)
+        startShape(skin, layout, gravity, patch, start, result.assumedFlat);
+
+    context.report("reconstructing patches", 0);
+    auto state = solvePatches(layout, input, start, options, context);
+    if (!state)
+        return tl::unexpected(state.error());
+    const double sigma = shapeNoise(layout, input, *state).sigma;
+    // Once more with the noise that the residuals show, where it is not what was assumed.
+    if (sigma > 0 && (sigma > 1.3 * options.accelerometerSigma || sigma < options.accelerometerSigma / 1.3)) {
+        options.accelerometerSigma = std::clamp(sigma, 1e-3, 2.0);
+        context.report("reconstructing patches", 0.5);
+        state = solvePatches(layout, input, *state, options, context);
+        if (!state)
+            return tl::unexpected(state.error());
+    }
+    const ShapeNoise noise = shapeNoise(layout, input, *state);
+    result.accelerometerSigma = noise.sigma;
+    result.noisy = noise.noisy;
+    result.accelerometers = state->accelerometers;
+    result.up_o = state->up_r;
     for (const Patch& patch : layout.patches) {
         PatchShape shape;
         for (const std::size_t u : patch.modules)
-            shape.T_o_u.push_back(solved->state.T_r_u[u]);
+            shape.T_o_u.push_back(state->T_r_u[u]);
         result.shapes.push_back(std::move(shape));
     }
     return result;

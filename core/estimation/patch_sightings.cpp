@@ -1,8 +1,8 @@
 #include "core/estimation/patch_sightings.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <map>
+#include <numeric>
 
 namespace skincal {
 
@@ -14,8 +14,12 @@ std::vector<PatchSighting> collectSightings(const Skin& skin, const SkinLayout& 
         for (std::size_t i = 0; i < layout.patches[k].modules.size(); ++i)
             T_o_u[layout.patches[k].modules[i]] = shapes[k].T_o_u[i];
     }
+    std::vector<std::size_t> byModule(pixels.size());
+    std::iota(byModule.begin(), byModule.end(), std::size_t{0});
+    std::stable_sort(byModule.begin(), byModule.end(),
+                     [&](std::size_t a, std::size_t b) { return pixels[a].module < pixels[b].module; });
     std::map<std::pair<std::size_t, std::size_t>, PatchSighting> sightings;
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
+    for (const std::size_t i : byModule) {
         const PixelObservation& o = pixels[i];
         if (!T_o_u[o.module])
             continue;
@@ -31,20 +35,6 @@ std::vector<PatchSighting> collectSightings(const Skin& skin, const SkinLayout& 
     for (auto& [key, sighting] : sightings)
         result.push_back(std::move(sighting));
     return result;
-}
-
-std::string notSeenWithPlaced(const Skin& skin, const Patch& patch, std::size_t mostLeds, int needed) {
-    const auto origin = skin.modules[patch.origin].id.value;
-    if (mostLeds == 0)
-        return fmt::format("patch {} (origin {}) was seen in no view: add one that shows it beside a placed patch",
-                           patch.id.value, origin);
-    if (mostLeds < static_cast<std::size_t>(needed))
-        return fmt::format(
-            "patch {} (origin {}) showed at most {} LEDs in a view, {} are needed: move the camera "
-            "closer or more in front of it",
-            patch.id.value, origin, mostLeds, needed);
-    return fmt::format("patch {} (origin {}) was never seen with a placed patch: add a view that shows both",
-                       patch.id.value, origin);
 }
 
 }  // namespace skincal

@@ -18,13 +18,10 @@ struct PatchSighting {
     std::vector<LedCorrespondence> leds;    ///< parallel to observations
 };
 
-/// Every patch in every view that shows at least one of its LEDs, by view, then patch. Detections of modules without
-/// a pose in their patch are left out.
+/// Every patch in every view that shows at least one of its LEDs, by view, then patch; within one by module, so that
+/// the order of detections makes no difference. Detections of modules without a pose in their patch are left out.
 [[nodiscard]] std::vector<PatchSighting> collectSightings(const Skin& skin, const SkinLayout& layout,
                                                           const std::vector<PatchShape>& shapes,
                                                           const std::vector<PixelObservation>& pixels);
-
-/// What an operator has to do about a patch or body that can't be placed, in plain English.
-[[nodiscard]] std::string notSeenWithPlaced(const Skin& skin, const Patch& patch, std::size_t mostLeds, int needed);
 
 }  // namespace skincal

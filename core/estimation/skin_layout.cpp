@@ -1,23 +1,20 @@
 #include "core/estimation/skin_layout.h"
 
 #include <algorithm>
+#include <stdexcept>
+
+#include "core/geometry/statistics.h"
 
 namespace skincal {
 namespace {
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Distance that the LEDs of two modules would have as neighbours, m. LEDs sit off centre, so it depends much on how
 /// the modules are turned.
 double neighbourDistance(const Skin& skin, const GraphLink& link, const std::optional<Matrix3d>& R_a_b) {
     const ModuleTemplate& a = skin.templateOf(link.a);
     const ModuleTemplate& b = skin.templateOf(link.b);
-    const Vector3d& port_a = a.ports[static_cast<std::size_t>(link.a_port)];
-    const Vector3d& port_b = b.ports[static_cast<std::size_t>(link.b_port)];
+    const Vector3d& port_a = skin.port(link.a, link.a_port);
+    const Vector3d& port_b = skin.port(link.b, link.b_port);
     const Matrix3d R = R_a_b.value_or(flatNeighbourRotation(port_a, port_b));
     return (port_a + R * (b.led - port_b) - a.led).norm();
 }
@@ -95,6 +92,27 @@ void addSeparationsOfView(const std::vector<GraphLink>& links, const ViewOfLinks
     }
 }
 
+/// A joint moves a module against one neighbour and not against the others. Where it moved against all of them, its
+/// accelerometer is broken, and what that says of the links proves nothing.
+void forgetBrokenAccelerometers(const std::vector<GraphLink>& links, std::size_t modules, double limit,
+                                CableEvidence& evidence) {
+    std::vector<std::size_t> measured(modules, 0);
+    std::vector<std::size_t> moving(modules, 0);
+    for (std::size_t l = 0; l < links.size(); ++l) {
+        for (const std::size_t end : {links[l].a, links[l].b}) {
+            measured[end] += evidence.rotationResidual[l] ? 1 : 0;
+            moving[end] += evidence.rotationResidual[l] && *evidence.rotationResidual[l] > limit ? 1 : 0;
+        }
+    }
+    const auto broken = [&](std::size_t u) { return moving[u] >= 2 && moving[u] == measured[u]; };
+    for (std::size_t l = 0; l < links.size(); ++l) {
+        if (broken(links[l].a) || broken(links[l].b)) {
+            evidence.R_a_b[l].reset();
+            evidence.rotationResidual[l].reset();
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<std::optional<double>> linkSeparations(const Measurements& measurements, const SkinGraph& graph,
@@ -127,15 +145,26 @@ std::vector<std::optional<double>> linkSeparations(const Measurements& measureme
     return result;
 }
 
-SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity, const LayoutOptions& options) {
+bool LayoutOptions::validate() const {
+    return cables.validate() && rotation.validate() && minSeparationViews > 0;
+}
+
+SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity, const LayoutOptions& options,
+                      const std::vector<std::optional<double>>& gaps) {
+    if (!options.validate())
+        throw std::logic_error("LayoutOptions out of range");
     SkinLayout layout{buildSkinGraph(measurements.skin), {}, {}, {}};
     const auto& links = layout.graph.links();
-    CableEvidence evidence;
-    evidence.R_a_b.resize(links.size());
+    CableEvidence evidence(links.size());
+    if (!gaps.empty())
+        evidence.gap = gaps;
     for (std::size_t l = 0; l < links.size(); ++l) {
-        if (const auto rotation = gravity.relativeRotation(links[l].a, links[l].b, options.rotation))
+        if (const auto rotation = gravity.relativeRotation(links[l].a, links[l].b, options.rotation)) {
             evidence.R_a_b[l] = rotation->R_c_n;
+            evidence.rotationResidual[l] = rotation->residual_rms;
+        }
     }
+    forgetBrokenAccelerometers(links, measurements.skin.modules.size(), options.cables.maxRotationResidual, evidence);
     evidence.separation = linkSeparations(measurements, layout.graph, evidence.R_a_b, options.cables.maxSeparation,
                                           options.minSeparationViews);
     layout.verdicts = detectCables(measurements.skin, layout.graph, evidence, options.cables);

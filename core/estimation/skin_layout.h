@@ -24,6 +24,8 @@ struct LayoutOptions {
     RelativeRotationOptions rotation;
     /// In fewer views than this the distance of two spots proves nothing: one of them may be a reflection.
     int minSeparationViews = 2;
+
+    [[nodiscard]] bool validate() const;
 };
 
 /// How far apart in the pictures the two LEDs of a link are: times the distance that they would have as neighbours, at
@@ -38,7 +40,10 @@ struct LayoutOptions {
                                                                  double tooLong, int minViews);
 
 /// Graph, cables by all evidence there is, patches with their origins (METHOD.md, section 2, steps 1 and 2).
+/// @param gaps  per link of the graph, how far apart its ports came out in an earlier solution (m); empty before the
+/// first.
 [[nodiscard]] SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity,
-                                    const LayoutOptions& options = {});
+                                    const LayoutOptions& options = {},
+                                    const std::vector<std::optional<double>>& gaps = {});
 
 }  // namespace skincal

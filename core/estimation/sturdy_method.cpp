@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "core/estimation/body_assembly.h"
 #include "core/estimation/body_attachment.h"
+#include "core/estimation/missing_data.h"
+#include "core/estimation/module_support.h"
 #include "core/estimation/patch_sightings.h"
 #include "core/estimation/view_alternatives.h"
+#include "core/geometry/statistics.h"
 
 namespace skincal {
 namespace {
@@ -25,6 +29,7 @@ struct Run {
     PatchShapesResult shapes;
     std::vector<PatchSighting> sightings;
     std::vector<SightingCandidates> candidates;
+    std::vector<PatchEvidence> evidence;
     GravityFrame gravityFrame;
     GrowingBody body;
     BodyEstimate estimate;
@@ -37,8 +42,11 @@ void findCandidates(Run& run) {
         if (run.context.isCancelled())
             return;
         SightingCandidates candidates{sighting.view, sighting.patch, {}};
-        if (auto poses = estimatePatchPoses(sighting.leds, run.measurements.camera, run.options.pose))
+        auto poses = estimatePatchPoses(sighting.leds, run.measurements.camera, run.options.pose);
+        if (poses)
             candidates.poses = std::move(*poses);
+        else if (poses.error().code != ErrorCode::TooFewPoints)
+            ++run.evidence[sighting.patch].poseFailures[poses.error().code];
         run.candidates.push_back(std::move(candidates));
     }
 }
@@ -152,12 +160,6 @@ void attachRest(Run& run) {
     }
 }
 
-double medianOf(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// Robust standard deviation per axis of the pixel residuals, in units of each detection's own sigma.
 double pixelNoiseFactor(const AdjustmentInput& input, const BodyState& state, double floor_px) {
     std::vector<double> lengths;
@@ -166,7 +168,7 @@ double pixelNoiseFactor(const AdjustmentInput& input, const BodyState& state, do
             lengths.push_back(r->norm() / std::max(o.sigma_px, floor_px));
     }
     // The median of a two-dimensional normal's length is 1.1774 sigma.
-    return lengths.empty() ? 1.0 : medianOf(std::move(lengths)) / 1.1774;
+    return lengths.empty() ? 1.0 : median(std::move(lengths)) / 1.1774;
 }
 
 BodyState initialState(const Run& run) {
@@ -244,7 +246,7 @@ tl::expected<BodyState, CalibrationError> adjustGradually(Run& run, BodyState st
     for (const double scale_px : {1.0, 0.25, floor_px}) {
         run.context.report("adjusting the body", 1 - scale_px);
         options.pixelSigmaFloor_px = std::max(floor_px, scale_px);
-        const auto result = adjustBody(run.input, state, fixedView, std::nullopt, options, run.context);
+        const auto result = adjustBody(run.input, state, Gauge{{fixedView}, {}}, options, run.context);
         if (!result)
             return tl::unexpected(result.error());
         state = result->state;
@@ -270,7 +272,7 @@ tl::expected<BodyState, CalibrationError> adjustGradually(Run& run, BodyState st
             kept.pixels.back().sigma_px = sigma;
         }
     }
-    const auto result = adjustBody(kept, state, fixedView, std::nullopt, options, run.context);
+    const auto result = adjustBody(kept, state, Gauge{{fixedView}, {}}, options, run.context);
     if (!result)
         return tl::unexpected(result.error());
     run.estimate.condition["pixel noise factor"] = factor;
@@ -279,35 +281,84 @@ tl::expected<BodyState, CalibrationError> adjustGradually(Run& run, BodyState st
     return result->state;
 }
 
-void reportMissing(Run& run) {
-    std::vector<std::size_t> mostLeds(run.layout.patches.size(), 0);
-    for (const PatchSighting& sighting : run.sightings)
-        mostLeds[sighting.patch] = std::max(mostLeds[sighting.patch], sighting.leds.size());
+/// Modules that started flat for want of readings keep a pose only where the rest of the data came to hold it.
+void dropWhatNothingHolds(Run& run, BodyState& state) {
+    AdjustmentInput used = run.input;
+    used.pixels.clear();
+    for (std::size_t i = 0; i < run.input.pixels.size(); ++i) {
+        if (!run.estimate.rejected[i])
+            used.pixels.push_back(run.input.pixels[i]);
+    }
+    std::vector<bool> measured = run.shapes.assumedFlat;
+    measured.flip();
+    const std::vector<bool> held = heldModules(used, state, std::move(measured));
+    std::vector<std::size_t> dropped;
+    for (std::size_t u = 0; u < held.size(); ++u) {
+        if (!held[u] && state.T_r_u[u]) {
+            state.T_r_u[u].reset();
+            dropped.push_back(u);
+        }
+    }
     for (std::size_t k = 0; k < run.layout.patches.size(); ++k) {
+        for (std::size_t i = 0; i < run.layout.patches[k].modules.size(); ++i) {
+            if (!held[run.layout.patches[k].modules[i]] && run.shapes.assumedFlat[run.layout.patches[k].modules[i]])
+                run.shapes.shapes[k].T_o_u[i].reset();
+        }
+    }
+    if (!dropped.empty())
+        run.estimate.missing.push_back(whyNotHeld(run.measurements.skin, dropped));
+}
+
+void reportMissing(Run& run, const BodyState& state) {
+    BodyEstimate& estimate = run.estimate;
+    const Skin& skin = run.measurements.skin;
+    const bool anyPlaced =
+        std::any_of(state.T_r_u.begin(), state.T_r_u.end(), [](const auto& T) { return T.has_value(); });
+    for (std::size_t k = 0; k < run.layout.patches.size(); ++k) {
+        const Patch& patch = run.layout.patches[k];
         if (run.body.T_r_o[k]) {
-            run.estimate.patchStatus[k] = "placed";
+            estimate.patchStatus[k] = "placed";
             continue;
         }
-        run.estimate.patchStatus[k] = "not seen with a placed patch";
-        run.estimate.missing.push_back(
-            notSeenWithPlaced(run.measurements.skin, run.layout.patches[k], mostLeds[k], run.options.pose.minInliers));
+        estimate.patchStatus[k] = "not seen with a placed patch";
+        estimate.missing.push_back(whyNotPlaced(skin, patch, run.evidence[k], run.options.pose.minInliers, anyPlaced));
     }
-    for (std::size_t v = 0; v < run.body.T_r_v.size(); ++v)
-        run.estimate.viewStatus[v] =
+    for (std::size_t v = 0; v < run.body.T_r_v.size(); ++v) {
+        estimate.viewStatus[v] =
             run.body.T_r_v[v] ? "placed" : "shows no placed patch well enough, or could be in two places";
+        if (!run.body.T_r_v[v])
+            estimate.warnings.push_back(
+                fmt::format("view {} is not used: it {}", run.measurements.views[v].name, estimate.viewStatus[v]));
+    }
     const bool anyGravity = run.gravity.poseCount() > 0;
     for (std::size_t k = 0; anyGravity && k < run.layout.patches.size(); ++k) {
-        if (!run.gravityFrame.R_g_o[k] && run.layout.patches[k].modules.size() > 1) {
-            run.estimate.warnings.push_back(
+        if (!run.gravityFrame.R_g_o[k] && run.body.T_r_o[k] && run.layout.patches[k].modules.size() > 1) {
+            estimate.trustAtMost = Trust::Usable;
+            estimate.warnings.push_back(
                 fmt::format("patch {}: gravity disagrees with the other patches or is too alike in all poses; its "
-                            "rotation rests on "
-                            "the camera alone",
+                            "rotation rests on the camera alone",
                             run.layout.patches[k].id.value));
         }
     }
+    for (const NoisyAccelerometer& noisy : run.shapes.noisy)
+        estimate.warnings.push_back(
+            fmt::format("module {}: its accelerometer is off by {:.2f} m/s² rms, the others by {:.2f}",
+                        skin.modules[noisy.module].id.value, noisy.sigma, run.shapes.accelerometerSigma));
 }
 
-/// The patch's pose is its origin's, or follows from any placed module where the origin has none.
+/// The views whose pictures have a say in where each patch lies.
+void listPatchViews(Run& run, const BodyState& state) {
+    std::vector<std::set<std::size_t>> views(run.layout.patches.size());
+    for (std::size_t i = 0; i < run.input.pixels.size(); ++i) {
+        const PixelObservation& o = run.input.pixels[i];
+        if (!run.estimate.rejected[i] && state.T_r_v[o.view] && state.T_r_u[o.module])
+            views[run.layout.patchOf[o.module]].insert(o.view);
+    }
+    for (const auto& of : views)
+        run.estimate.patchViews.emplace_back(of.begin(), of.end());
+}
+
+/// A patch's frame is its origin's: it has none where nothing holds the origin.
 void placePatchFrames(Run& run, const BodyState& state) {
     for (std::size_t k = 0; k < run.layout.patches.size(); ++k) {
         const Patch& patch = run.layout.patches[k];
@@ -336,21 +387,44 @@ void useFirstViewAsFrame(BodyState& state) {
     state.up_r.clear();
 }
 
-}  // namespace
+using LinkGaps = std::vector<std::optional<double>>;
 
-bool SturdyMethodOptions::validate() const {
-    return pose.validate() && selection.validate() && averaging.validate() && adjustment.validate() &&
-           rejectionSigmas > 1 && gravityRotationSigma > 0;
+struct Round {
+    BodyModel body;
+    LinkGaps gaps;
+};
+
+/// How far apart the ports of each link came out; what an earlier round knew where this one does not.
+LinkGaps gapsOf(const Run& run, const BodyState& state, const LinkGaps& before) {
+    const auto& links = run.layout.graph.links();
+    LinkGaps gaps = before;
+    gaps.resize(links.size());
+    for (std::size_t l = 0; l < links.size(); ++l) {
+        const GraphLink& link = links[l];
+        const auto& T_r_a = state.T_r_u[link.a];
+        const auto& T_r_b = state.T_r_u[link.b];
+        if (T_r_a && T_r_b)
+            gaps[l] = (*T_r_a * run.measurements.skin.port(link.a, link.a_port) -
+                       *T_r_b * run.measurements.skin.port(link.b, link.b_port))
+                          .norm();
+    }
+    return gaps;
 }
 
-tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& measurements,
-                                                          const SturdyMethodOptions& options,
-                                                          const RunContext& context) {
-    if (!options.validate())
-        throw std::logic_error("SturdyMethodOptions out of range");
+std::vector<LinkKind> kindsOf(const SkinLayout& layout) {
+    std::vector<LinkKind> kinds;
+    for (const LinkVerdict& verdict : layout.verdicts)
+        kinds.push_back(verdict.kind);
+    return kinds;
+}
+
+/// One round with the links as they are judged now.
+tl::expected<Round, CalibrationError> solveRound(const Measurements& measurements, const LinkGaps& gaps,
+                                                 const SturdyMethodOptions& options, const RunContext& context) {
     const Skin& skin = measurements.skin;
-    Run run{measurements, options, context, GravityTable(skin, measurements.gravity), {}, {}, {}, {}, {}, {}, {}, {}};
-    run.layout = layOutSkin(measurements, run.gravity, options.layout);
+    Run run{measurements, options, context, GravityTable(skin, measurements.gravity), {}, {}, {}, {}, {}, {},
+            {},           {},      {}};
+    run.layout = layOutSkin(measurements, run.gravity, options.layout, gaps);
     run.input.skin = &skin;
     run.input.camera = &measurements.camera;
     run.input.gravity = &run.gravity;
@@ -362,10 +436,11 @@ tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& me
         return tl::unexpected(shapes.error());
     run.shapes = std::move(*shapes);
     run.sightings = collectSightings(skin, run.layout, run.shapes.shapes, run.input.pixels);
+    run.evidence = patchEvidence(run.layout, run.shapes.shapes, run.input.pixels);
     findCandidates(run);
     if (context.isCancelled())
         return tl::unexpected(CalibrationError{ErrorCode::Cancelled, {}});
-    run.gravityFrame = alignPatchesByGravity(run.shapes.up_o);
+    run.gravityFrame = alignPatchesByGravity(run.shapes.up_o, options.gravity);
     run.input.gravityGroup = gravityGroups(run);
     const auto selections = selectCandidates(run.candidates, run.gravityFrame.R_g_o, options.selection);
     placeByGraph(run, selections);
@@ -378,12 +453,7 @@ tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& me
     estimate.rejectedReason.resize(run.input.pixels.size());
     estimate.patchStatus.resize(run.layout.patches.size());
     estimate.viewStatus.resize(measurements.views.size());
-    estimate.patchViews.resize(run.layout.patches.size());
     estimate.T_r_o.resize(run.layout.patches.size());
-    for (const SightingCandidates& sighting : run.candidates) {
-        if (!sighting.poses.empty())
-            estimate.patchViews[sighting.patch].push_back(sighting.view);
-    }
 
     BodyState state = initialState(run);
     if (!alternatives.empty()) {
@@ -391,10 +461,12 @@ tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& me
         if (!settled)
             return tl::unexpected(settled.error());
         state = std::move(settled->state);
-        if (settled->undecided > 0)
+        if (settled->undecided > 0) {
+            estimate.trustAtMost = Trust::Usable;
             estimate.warnings.push_back(
                 fmt::format("{} views show a flat patch alone and could be in two places: the likelier was taken",
                             settled->undecided));
+        }
     }
     useFirstViewAsFrame(state);
     if (std::any_of(state.T_r_v.begin(), state.T_r_v.end(), [](const auto& T) { return T.has_value(); })) {
@@ -403,13 +475,43 @@ tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& me
             return tl::unexpected(adjusted.error());
         state = std::move(*adjusted);
     }
-    reportMissing(run);
+    dropWhatNothingHolds(run, state);
+    reportMissing(run, state);
+    listPatchViews(run, state);
     placePatchFrames(run, state);
     estimate.shapes = run.shapes.shapes;
     estimate.T_r_u = state.T_r_u;
     estimate.T_r_v = state.T_r_v;
     estimate.accelerometers = state.accelerometers;
-    return assembleBody(measurements, run.gravity, run.layout, run.input, estimate);
+    return Round{assembleBody(measurements, run.gravity, run.layout, run.input, estimate), gapsOf(run, state, gaps)};
+}
+
+}  // namespace
+
+bool SturdyMethodOptions::validate() const {
+    return layout.validate() && pose.validate() && gravity.validate() && selection.validate() && averaging.validate() &&
+           adjustment.validate() && rejectionSigmas > 1 && maxRelinkings >= 0 && gravityRotationSigma > 0;
+}
+
+tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& measurements,
+                                                          const SturdyMethodOptions& options,
+                                                          const RunContext& context) {
+    if (!options.validate())
+        throw std::logic_error("SturdyMethodOptions out of range");
+    const GravityTable gravity(measurements.skin, measurements.gravity);
+    LinkGaps gaps;
+    auto round = solveRound(measurements, gaps, options, context);
+    // A solution tells better than any single measurement which links are cables; so long as it does, solve again.
+    for (int more = 0; round && more < options.maxRelinkings; ++more) {
+        const auto before = kindsOf(layOutSkin(measurements, gravity, options.layout, gaps));
+        if (kindsOf(layOutSkin(measurements, gravity, options.layout, round->gaps)) == before)
+            break;
+        gaps = round->gaps;
+        round = solveRound(measurements, gaps, options, context);
+    }
+    if (!round)
+        return tl::unexpected(round.error());
+    return std::move(round->body);
 }
 
 }  // namespace skincal

@@ -21,7 +21,7 @@ tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& 
         return settled;
     const auto fixedModule = static_cast<std::size_t>(first - modules.begin());
     const auto adjusted = [&](const BodyState& state) {
-        return adjustBody(input, state, std::nullopt, fixedModule, options, context);
+        return adjustBody(input, state, Gauge{{}, {fixedModule}}, options, context);
     };
     auto best = adjusted(settled.state);
     if (!best && best.error().code == ErrorCode::Cancelled)

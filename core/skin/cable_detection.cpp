@@ -17,17 +17,19 @@ LinkVerdict cable(LinkReason reason, std::string explanation) {
 }
 
 /// What one link says for itself, leaving aside which others claim its ports.
-LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const std::optional<Matrix3d>& R_a_b,
-                       const std::optional<double>& separation, const CableOptions& options) {
+LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const CableEvidence& evidence, std::size_t l,
+                       const CableOptions& options) {
+    const auto& R_a_b = evidence.R_a_b[l];
+    const auto& rotationResidual = evidence.rotationResidual[l];
+    const auto& separation = evidence.separation[l];
+    const auto& gap = evidence.gap[l];
     if (link.a == link.b)
         return cable(LinkReason::SelfLink, "both ends are at the same module");
     if (link.has(LinkIssue::HostPort))
         return cable(LinkReason::ComputerPort, "its port is the one that is wired to the computer");
     LinkVerdict verdict;
     if (R_a_b) {
-        const Matrix3d flat =
-            flatNeighbourRotation(skin.templateOf(link.a).ports[static_cast<std::size_t>(link.a_port)],
-                                  skin.templateOf(link.b).ports[static_cast<std::size_t>(link.b_port)]);
+        const Matrix3d flat = flatNeighbourRotation(skin.port(link.a, link.a_port), skin.port(link.b, link.b_port));
         const BendAndTwist found = bendAndTwist(*R_a_b, flat);
         verdict.bend = found.bend;
         verdict.twist = found.twist;
@@ -47,7 +49,24 @@ LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const std::optio
             return verdict;
         }
     }
-    if (separation && *separation > options.maxSeparation) {
+    if (R_a_b && rotationResidual && *rotationResidual > options.maxRotationResidual) {
+        verdict.kind = LinkKind::Cable;
+        verdict.reason = LinkReason::Movement;
+        verdict.explanation = fmt::format(
+            "the modules turned against each other between the poses: their readings differ by {:.1f} m/s², those of "
+            "neighbours by {:.1f} at most",
+            *rotationResidual, options.maxRotationResidual);
+        return verdict;
+    }
+    if (gap && *gap > options.maxGap) {
+        verdict.kind = LinkKind::Cable;
+        verdict.reason = LinkReason::Gap;
+        verdict.explanation = fmt::format("taken for neighbours, their ports came out {:.1f} mm apart, {:.1f} at most",
+                                          *gap * 1e3, options.maxGap * 1e3);
+        return verdict;
+    }
+    // Where the two ports did meet, they did not by chance.
+    if (!gap && separation && *separation > options.maxSeparation) {
         verdict.kind = LinkKind::Cable;
         verdict.reason = LinkReason::Separation;
         verdict.explanation =
@@ -111,7 +130,8 @@ void settleContradictions(const SkinGraph& graph, std::vector<LinkVerdict>& verd
 }  // namespace
 
 bool CableOptions::validate() const {
-    return maxBend > 0 && maxBend <= kPi && maxTwist > 0 && maxTwist <= kPi && maxSeparation > 1;
+    return maxBend > 0 && maxBend <= kPi && maxTwist > 0 && maxTwist <= kPi && maxRotationResidual > 0 &&
+           maxSeparation > 1 && maxGap > 0;
 }
 
 Matrix3d flatNeighbourRotation(const Vector3d& port_a, const Vector3d& port_b) {
@@ -134,12 +154,13 @@ std::vector<LinkVerdict> detectCables(const Skin& skin, const SkinGraph& graph, 
     const auto& links = graph.links();
     if (!options.validate())
         throw std::logic_error("CableOptions out of range");
-    if (evidence.R_a_b.size() != links.size() || evidence.separation.size() != links.size())
+    if (evidence.R_a_b.size() != links.size() || evidence.rotationResidual.size() != links.size() ||
+        evidence.separation.size() != links.size() || evidence.gap.size() != links.size())
         throw std::logic_error("detectCables: evidence and graph differ in size");
     std::vector<LinkVerdict> verdicts;
     verdicts.reserve(links.size());
     for (std::size_t l = 0; l < links.size(); ++l) {
-        LinkVerdict verdict = judgeAlone(skin, links[l], evidence.R_a_b[l], evidence.separation[l], options);
+        LinkVerdict verdict = judgeAlone(skin, links[l], evidence, l, options);
         // A module can't be its own neighbour, whatever anybody says.
         if (links[l].decided && links[l].a != links[l].b) {
             verdict.kind = *links[l].decided;

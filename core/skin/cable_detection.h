@@ -18,7 +18,9 @@ enum class LinkReason {
     Contradictory,  ///< another link claims the same port, and this one is not the one that fits
     Bend,           ///< the two boards are folded more than neighbours can be
     Twist,          ///< turned in the plane of the skin more than neighbours can be
+    Movement,       ///< the two boards turned against each other between the poses: a joint is between them
     Separation,     ///< the LEDs are far apart in the pictures
+    Gap,            ///< the two ports are far apart in a solution that took them for one point
 };
 
 struct LinkVerdict {
@@ -31,8 +33,15 @@ struct LinkVerdict {
 
 /// What was measured about the links of a graph, entry by entry; nothing where it could not be.
 struct CableEvidence {
-    std::vector<std::optional<Matrix3d>> R_a_b;     ///< relative rotation from gravity
+    CableEvidence() = default;
+    /// Nothing measured about any of so many links.
+    explicit CableEvidence(std::size_t links) : R_a_b(links), rotationResidual(links), separation(links), gap(links) {}
+
+    std::vector<std::optional<Matrix3d>> R_a_b;  ///< relative rotation from gravity
+    /// How much the readings of the two ends differ all the same, rms over the poses, m/s^2.
+    std::vector<std::optional<double>> rotationResidual;
     std::vector<std::optional<double>> separation;  ///< distance in the pictures, times that of neighbours
+    std::vector<std::optional<double>> gap;         ///< between the two ports in an earlier solution, m
 };
 
 struct CableOptions {
@@ -40,8 +49,12 @@ struct CableOptions {
     double maxBend = 75 * kDegree;
     /// The mould holds the ports face to face. An uncalibrated accelerometer adds some 4 degrees, 25 is far beyond.
     double maxTwist = 25 * kDegree;
+    /// m/s^2. Two uncalibrated accelerometers may differ by 2; a joint that turns by 45 degrees between poses by 5.
+    double maxRotationResidual = 3.5;
     /// Seen 60 degrees aside, a row of neighbours along the axis of the tilt is twice as long as one across it.
     double maxSeparation = 2.2;
+    /// m. Play is a fraction of a millimetre; more than this between two ports is no gap in an elastomer mould.
+    double maxGap = 5e-3;
 
     [[nodiscard]] bool validate() const;
 };

@@ -40,6 +40,10 @@ struct Skin {
     std::vector<HostLink> hostLinks;
 
     [[nodiscard]] const ModuleTemplate& templateOf(std::size_t module) const { return templates[modules[module].type]; }
+    /// Port vector of a module, in its frame.
+    [[nodiscard]] const Vector3d& port(std::size_t module, int port) const {
+        return templateOf(module).ports[static_cast<std::size_t>(port)];
+    }
     /// Position of each id in `modules`. Built on demand: keep the map where you look up often.
     [[nodiscard]] std::unordered_map<ModuleId, std::size_t> indexById() const;
 };

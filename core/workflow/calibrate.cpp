@@ -19,7 +19,7 @@ tl::expected<ViewDetections, CalibrateError> detect(const Recording& recording, 
     part.report = [&](std::string_view, double done) {
         context.report("reading frames", (static_cast<double>(v) + done) / static_cast<double>(recording.views.size()));
     };
-    const bool paper = options.method == Method::Paper && suitsPaperDetector(view.frames);
+    const bool paper = options.method == Method::Paper && suitsPaperDetector(view.frames, options.paperDetector);
     auto found = paper ? detectPaper(view.name, modules, view.frames, loadFrameOfView, options.paperDetector, part)
                        : decodeView(view.name, modules, view.frames, loadFrameOfView, options.decoder, part);
     if (!found)

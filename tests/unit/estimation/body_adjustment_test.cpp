@@ -35,7 +35,7 @@ TEST(AdjustBody, RecoversTheTruthFromAPerturbedStart) {
         const SyntheticWorld world = makeWorld(random, twoPatches());
         const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
         const AdjustmentInput input = world.input(gravity);
-        const auto found = adjustBody(input, disturbed(random, world.state(), 0), 0, std::nullopt);
+        const auto found = adjustBody(input, disturbed(random, world.state(), 0), Gauge{{0}, {}});
         ASSERT_TRUE(found) << found.error().message();
         EXPECT_TRUE(found->summary.usable);
         EXPECT_GT(found->summary.iterations, 1);
@@ -57,10 +57,10 @@ TEST(AdjustBody, TheGaugeKeepsItsPose) {
     const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
     const AdjustmentInput input = world.input(gravity);
     const BodyState start = disturbed(random, world.state(), 99);
-    const auto byView = adjustBody(input, start, 2, std::nullopt).value();
+    const auto byView = adjustBody(input, start, Gauge{{2}, {}}).value();
     EXPECT_LT(poseDifference(*byView.state.T_r_v[2], *start.T_r_v[2]).angle, 1e-12);
     EXPECT_EQ(byView.state.T_r_v[2]->translation(), start.T_r_v[2]->translation());
-    const auto byModule = adjustBody(input, start, std::nullopt, 4).value();
+    const auto byModule = adjustBody(input, start, Gauge{{}, {4}}).value();
     EXPECT_LT(poseDifference(*byModule.state.T_r_u[4], *start.T_r_u[4]).angle, 1e-12);
     EXPECT_EQ(byModule.state.T_r_u[4]->translation(), start.T_r_u[4]->translation());
     // Both give the same body, only placed elsewhere.
@@ -80,14 +80,14 @@ TEST(AdjustBody, CalibratesAccelerometersUnlessToldNotTo) {
     const AdjustmentInput input = world.input(gravity);
     AdjustmentOptions plain;
     plain.accelerometerSigma = 1e-3;
-    const auto found = adjustBody(input, disturbed(random, world.state(), 0), 0, std::nullopt, plain).value();
+    const auto found = adjustBody(input, disturbed(random, world.state(), 0), Gauge{{0}, {}}, plain).value();
     for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
         EXPECT_LT((found.state.accelerometers[u].bias - world.accelerometers[u].bias).norm(), 0.01);
         EXPECT_LT((found.state.accelerometers[u].scale - world.accelerometers[u].scale).norm(), 0.002);
     }
     AdjustmentOptions asIs;
     asIs.calibrateAccelerometers = false;
-    const auto kept = adjustBody(input, disturbed(random, world.state(), 0), 0, std::nullopt, asIs).value();
+    const auto kept = adjustBody(input, disturbed(random, world.state(), 0), Gauge{{0}, {}}, asIs).value();
     for (const AccelerometerCalibration& c : kept.state.accelerometers) {
         EXPECT_EQ(c.bias, Vector3d::Zero());
         EXPECT_EQ(c.scale, Vector3d::Ones());
@@ -102,10 +102,10 @@ TEST(AdjustBody, OutliersWeighLittle) {
     options.views = 5;
     const SyntheticWorld world = makeWorld(random, options);
     const GravityTable gravity(world.measurements.skin, world.measurements.gravity);
-    const auto robust = adjustBody(world.input(gravity), world.state(), 0, std::nullopt).value();
+    const auto robust = adjustBody(world.input(gravity), world.state(), Gauge{{0}, {}}).value();
     AdjustmentOptions squares;
     squares.pixelLoss = squares.gravityLoss = squares.linkLoss = 0;
-    const auto plain = adjustBody(world.input(gravity), world.state(), 0, std::nullopt, squares).value();
+    const auto plain = adjustBody(world.input(gravity), world.state(), Gauge{{0}, {}}, squares).value();
     EXPECT_LT(largestDifference(robust.state.T_r_u, world.T_r_u).distance, 1e-3);
     EXPECT_GT(largestDifference(plain.state.T_r_u, world.T_r_u).distance,
               3 * largestDifference(robust.state.T_r_u, world.T_r_u).distance);
@@ -118,7 +118,7 @@ TEST(AdjustBody, WhatHasNoPoseTakesNoPart) {
     BodyState start = world.state();
     start.T_r_u[3].reset();
     start.T_r_v[1].reset();
-    const auto found = adjustBody(world.input(gravity), start, 0, std::nullopt).value();
+    const auto found = adjustBody(world.input(gravity), start, Gauge{{0}, {}}).value();
     EXPECT_FALSE(found.state.T_r_u[3]);
     EXPECT_FALSE(found.state.T_r_v[1]);
     EXPECT_LT(poseDifference(*found.state.T_r_u[2], world.T_r_u[2]).distance, 1e-5);
@@ -131,20 +131,20 @@ TEST(AdjustBody, CancelledOrNothingToAdjust) {
     const AdjustmentInput input = world.input(gravity);
     RunContext context;
     context.isCancelled = [] { return true; };
-    EXPECT_EQ(adjustBody(input, world.state(), 0, std::nullopt, {}, context).error().code, ErrorCode::Cancelled);
+    EXPECT_EQ(adjustBody(input, world.state(), Gauge{{0}, {}}, {}, context).error().code, ErrorCode::Cancelled);
     // In the middle of the iterations, too.
     int calls = 0;
     context.isCancelled = [&] { return ++calls > 2; };
     const BodyState start = disturbed(random, world.state(), 0);
-    EXPECT_EQ(adjustBody(input, start, 0, std::nullopt, {}, context).error().code, ErrorCode::Cancelled);
+    EXPECT_EQ(adjustBody(input, start, Gauge{{0}, {}}, {}, context).error().code, ErrorCode::Cancelled);
 
     const GravityTable silent(world.measurements.skin, {});
     AdjustmentInput nothing = input;
     nothing.gravity = &silent;
     nothing.pixels.clear();
     nothing.links.clear();
-    EXPECT_EQ(adjustBody(nothing, world.state(), 0, std::nullopt).error().code, ErrorCode::TooFewPoints);
-    EXPECT_EQ(adjustBody(input, world.state(), std::nullopt, std::nullopt).error().code, ErrorCode::TooFewPoints);
+    EXPECT_EQ(adjustBody(nothing, world.state(), Gauge{{0}, {}}).error().code, ErrorCode::TooFewPoints);
+    EXPECT_EQ(adjustBody(input, world.state(), Gauge{}).error().code, ErrorCode::TooFewPoints);
 }
 
 TEST(AdjustBody, BrokenContractsThrow) {
@@ -154,7 +154,7 @@ TEST(AdjustBody, BrokenContractsThrow) {
     AdjustmentInput input = world.input(gravity);
     BodyState state = world.state();
     const auto adjust = [&](const AdjustmentOptions& options = {}) {
-        (void)adjustBody(input, state, 0, std::nullopt, options);
+        (void)adjustBody(input, state, Gauge{{0}, {}}, options);
     };
     std::vector<AdjustmentOptions> bad(10);
     bad[0].accelerometerSigma = 0;
@@ -239,8 +239,8 @@ void expectBoundMet(const SyntheticOptions& options, bool ofViews) {
     for (PixelObservation& o : input.pixels)
         o.sigma_px = options.pixelNoise;
     const std::vector<std::size_t> which{1, 2};
-    const auto bound = ofViews ? viewPoseBound(input, world.state(), which, 0, std::nullopt, adjustment)
-                               : modulePoseBound(input, world.state(), which, 0, std::nullopt, adjustment);
+    const auto bound = ofViews ? viewPoseBound(input, world.state(), which, Gauge{{0}, {}}, adjustment)
+                               : modulePoseBound(input, world.state(), which, Gauge{{0}, {}}, adjustment);
     ASSERT_TRUE(bound);
     ASSERT_EQ(bound->rows(), 12);
     EXPECT_LT((*bound - bound->transpose()).norm(), 1e-9 * bound->norm());
@@ -259,7 +259,7 @@ void expectBoundMet(const SyntheticOptions& options, bool ofViews) {
         const GravityTable gravity(world.measurements.skin, readings);
         noisy.gravity = &gravity;
         // Priors are measurements, too: the truth is drawn from them by shifting what they expect.
-        const auto found = adjustBody(noisy, world.state(), 0, std::nullopt, adjustment).value();
+        const auto found = adjustBody(noisy, world.state(), Gauge{{0}, {}}, adjustment).value();
         for (std::size_t i = 0; i < which.size(); ++i) {
             const Isometry3d& T = ofViews ? *found.state.T_r_v[which[i]] : *found.state.T_r_u[which[i]];
             const Isometry3d& truth = ofViews ? world.T_r_v[which[i]] : world.T_r_u[which[i]];
@@ -301,11 +301,10 @@ TEST(PoseBounds, WhatTheDataDoNotFixIsRefused) {
     input.links.clear();
     // A module that only two pixels of one view tell about.
     std::erase_if(input.pixels, [](const PixelObservation& o) { return o.module == 1 && o.view != 0; });
-    const auto loose = modulePoseBound(input, world.state(), {1}, 0, std::nullopt);
+    const auto loose = modulePoseBound(input, world.state(), {1}, Gauge{{0}, {}});
     ASSERT_FALSE(loose);
     EXPECT_EQ(loose.error().code, ErrorCode::DegeneratePoints);
-    EXPECT_EQ(viewPoseBound(input, world.state(), {1}, std::nullopt, std::nullopt).error().code,
-              ErrorCode::DegeneratePoints);
+    EXPECT_EQ(viewPoseBound(input, world.state(), {1}, Gauge{}).error().code, ErrorCode::DegeneratePoints);
 }
 
 }  // namespace

@@ -38,10 +38,7 @@ TEST(EdgeRotation, ExactReadingsGiveTheExactRotation) {
     for (int i = 0; i < 500; ++i) {
         const Edge edge = randomEdge(random, 3 + random.index(10));
         const auto found = estimateRelativeRotation(edge.g_c, edge.g_n);
-        if (!found) {
-            EXPECT_EQ(found.error().code, ErrorCode::ParallelGravity);
-            continue;
-        }
+        ASSERT_TRUE(found) << found.error().message();
         EXPECT_LT(rotationAngle(found->R_c_n.transpose() * edge.R_c_n), 1e-7);
         EXPECT_LT(found->residual_rms, 1e-7);
     }
@@ -126,7 +123,7 @@ TEST(EdgeRotation, SpreadIsTheAngleBetweenPoses) {
     // Two unit vectors an angle a apart: the singular values' ratio is tan(a/2).
     for (const double a : {0.05, 0.3, 1.0, 1.5}) {
         const std::vector<Vector3d> g{{0, 0, 5}, {7 * std::sin(a), 0, 7 * std::cos(a)}};
-        EXPECT_NEAR(std::sin(gravitySpread(g)), std::tan(a / 2), 1e-9) << a;
+        EXPECT_NEAR(gravitySpread(g), a, 1e-9) << a;
     }
     RelativeRotationOptions strict;
     strict.minSpread_rad = 60 * kDegree;

@@ -210,7 +210,7 @@ TEST(PaperMethod, WithoutGravityOnlyOriginsHaveAShape) {
     for (const BodyModule& module : body.modules)
         unknown += module.status == "orientation unknown: no usable gravity readings" ? 1 : 0;
     EXPECT_EQ(unknown, 22);
-    EXPECT_THAT(body.quality.missing, testing::Each(HasSubstr("6 are needed")));
+    EXPECT_THAT(body.quality.missing, testing::Each(HasSubstr("only 1 of their modules have gravity readings")));
 }
 
 TEST(PaperMethod, NamesItsOutliers) {
@@ -229,19 +229,96 @@ TEST(PaperMethod, NamesItsOutliers) {
     }
 }
 
-TEST(SturdyMethod, PlacesFlatPatchesWithAndWithoutGravity) {
+TEST(SturdyMethod, PlacesFlatPatches) {
     Random random(9, "flat");
     SyntheticOptions options;
     options.patches = {{3, 3, 0}, {3, 3, 0, placed({0.5, 0.3, 1.0}, {0.15, 0.05, 0.01}), true}};
     options.views = 5;
-    for (const int poses : {10, 0}) {
-        options.poses = poses;
-        const SyntheticWorld world = makeWorld(random, options);
-        const BodyModel body = calibrateSturdy(world.measurements).value();
-        EXPECT_EQ(body.quality.modulesPlaced, 18U) << poses;
-        EXPECT_LT(compareToTruth(body, world).positionMax, 1e-4) << poses;
-        EXPECT_EQ(body.quality.gravity_residual_rms.has_value(), poses > 0);
+    const SyntheticWorld world = makeWorld(random, options);
+    const BodyModel body = calibrateSturdy(world.measurements).value();
+    EXPECT_EQ(body.quality.modulesPlaced, 18U);
+    EXPECT_LT(compareToTruth(body, world).positionMax, 1e-4);
+    EXPECT_EQ(body.quality.trust, Trust::Good);
+}
+
+TEST(SturdyMethod, WithoutGravityNothingIsMadeUp) {
+    Random random(14, "no gravity");
+    SyntheticOptions options = bentPatches();
+    options.poses = 0;
+    const BodyModel body = calibrateSturdy(makeWorld(random, options).measurements).value();
+    EXPECT_THAT(posesOf(body), IsEmpty());
+    EXPECT_EQ(body.quality.trust, Trust::NotToBeTrusted);
+    EXPECT_THAT(body.quality.missing, testing::Each(HasSubstr("0 of their modules have gravity readings")));
+    EXPECT_FALSE(body.quality.gravity_residual_rms);
+    for (const BodyModule& module : body.modules)
+        EXPECT_FALSE(module.accelerometer);
+}
+
+TEST(SturdyMethod, ASilentModuleIsHeldByLinksAndLedOrLeftOut) {
+    Random random(15, "silent");
+    SyntheticOptions options = bentPatches();
+    options.views = 6;
+    SyntheticWorld world = makeWorld(random, options);
+    Skin& skin = world.measurements.skin;
+    // One in the middle of the first patch, and a corner of it whose LED nobody sees.
+    const ModuleId middle(6);
+    const ModuleId corner(1);
+    std::erase_if(world.measurements.gravity,
+                  [&](const GravityReading& r) { return r.module == middle || r.module == corner; });
+    for (ViewDetections& view : world.measurements.views)
+        std::erase_if(view.found, [&](const LedDetection& d) { return d.module == corner; });
+    bool keptOne = false;
+    std::erase_if(skin.links, [&](const Link& link) {
+        const bool ofCorner = link.a == corner || link.b == corner;
+        const bool erase = ofCorner && keptOne;
+        keptOne = keptOne || ofCorner;
+        return erase;
+    });
+    const BodyModel body = calibrateSturdy(world.measurements).value();
+    EXPECT_EQ(body.quality.modulesPlaced, 23U);
+    EXPECT_LT(compareToTruth(body, world).positionMax, 1e-3);
+    EXPECT_LT(compareToTruth(body, world).rotationMax, 2 * kDegree);
+    for (const BodyModule& module : body.modules) {
+        EXPECT_EQ(module.T_body_module.has_value(), module.id != corner);
+        EXPECT_THAT(module.status, HasSubstr(module.id == corner ? "orientation unknown" : "placed"));
     }
+    EXPECT_THAT(body.quality.missing, ElementsAre(HasSubstr("modules 1: no gravity readings tell how they lie")));
+}
+
+TEST(SturdyMethod, APoseThatOnePatchLacksDoesNoHarm) {
+    Random random(16, "gap");
+    SyntheticWorld world = makeWorld(random, bentPatches());
+    std::erase_if(world.measurements.gravity,
+                  [&](const GravityReading& r) { return r.pose == 2 && world.patchOf[r.module.value - 1] == 1; });
+    const BodyModel body = calibrateSturdy(world.measurements).value();
+    EXPECT_EQ(body.quality.modulesPlaced, 24U);
+    EXPECT_EQ(body.quality.trust, Trust::Good);
+    EXPECT_THAT(body.quality.warnings, IsEmpty());
+}
+
+TEST(SturdyMethod, ReadingsInAnotherUnitAreNotTrusted) {
+    Random random(17, "units");
+    SyntheticWorld world = makeWorld(random, bentPatches());
+    for (GravityReading& reading : world.measurements.gravity)
+        reading.acceleration *= 1 / kStandardGravity;
+    const BodyModel body = calibrateSturdy(world.measurements).value();
+    EXPECT_EQ(body.quality.trust, Trust::NotToBeTrusted);
+    EXPECT_THAT(body.quality.warnings, testing::Contains(HasSubstr("their unit is not m/s²")));
+}
+
+TEST(PaperMethod, OrderOfDetectionsMakesNoDifference) {
+    Random random(18, "paper order");
+    SyntheticOptions options = bentPatches();
+    options.pixelNoise = 0.1;
+    options.outliers = 0.05;
+    SyntheticWorld world = makeWorld(random, options);
+    const BodyModel expected = calibratePaper(world.measurements).value();
+    for (ViewDetections& view : world.measurements.views)
+        std::reverse(view.found.begin(), view.found.end());
+    const BodyModel body = calibratePaper(world.measurements).value();
+    ASSERT_EQ(posesOf(body).size(), posesOf(expected).size());
+    for (std::size_t i = 0; i < posesOf(body).size(); ++i)
+        EXPECT_TRUE(posesOf(body)[i].T_body_module.matrix() == posesOf(expected)[i].T_body_module.matrix());
 }
 
 TEST(SturdyMethod, RejectsAndNamesOutliersAndNothingElse) {
@@ -345,6 +422,7 @@ TEST(SturdyMethod, AJointThatMovedBetweenPosesCostsGravityNotThePlace) {
     EXPECT_EQ(body.quality.modulesPlaced, 24U);
     EXPECT_LT(compareToTruth(body, world).positionMax, 1e-4);
     EXPECT_THAT(body.quality.warnings, testing::Contains(HasSubstr("patch 1: gravity disagrees")));
+    EXPECT_NE(body.quality.trust, Trust::Good);
 }
 
 TEST(SturdyMethod, AnEmptySkinIsAnEmptyBody) {

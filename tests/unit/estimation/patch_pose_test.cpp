@@ -242,6 +242,14 @@ TEST(PaperPatchPose, ExactPixelsOfABentPatchGiveTheExactPose) {
     }
 }
 
+TEST(PaperPatchPose, ItsConstantsAreThePapers) {
+    const PaperPoseOptions options;
+    EXPECT_EQ(options.iterations, 100);
+    EXPECT_EQ(options.reprojectionError_px, 8.0);
+    EXPECT_EQ(options.minLeds, 6);
+    EXPECT_EQ(options.minInliers, 6);
+}
+
 TEST(PaperPatchPose, NeedsSixLedsThatAgree) {
     Random random(11, "paper six");
     const Picture five = takePicture(random, 5, 0.07);
@@ -265,7 +273,8 @@ TEST(PaperPatchPose, NeedsSixLedsThatAgree) {
     }
     EXPECT_FALSE(estimatePatchPosePaper(point.leds, point.camera));
     for (const PaperPoseOptions& options :
-         {PaperPoseOptions{0, 8, 6}, PaperPoseOptions{100, 0, 6}, PaperPoseOptions{100, 8, 3}})
+         {PaperPoseOptions{0, 8, 6, 6}, PaperPoseOptions{100, 0, 6, 6}, PaperPoseOptions{100, 8, 3, 6},
+          PaperPoseOptions{100, 8, 6, 3}, PaperPoseOptions{100, 8, 6, 6, 1.0}})
         EXPECT_THROW((void)estimatePatchPosePaper(five.leds, five.camera, options), std::logic_error);
 }
 

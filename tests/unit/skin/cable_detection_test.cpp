@@ -105,6 +105,35 @@ TEST(DetectCables, NamesBendTwistAndSeparation) {
     EXPECT_TRUE(far.bend && far.twist);
 }
 
+TEST(DetectCables, ALinkAcrossAJointIsACable) {
+    const Skin skin = pairOfHexagons();
+    const SkinGraph graph = buildSkinGraph(skin);
+    CableEvidence evidence = noEvidence(graph);
+    evidence.R_a_b[0] = arranged(skin, graph.links()[0], 0.2, 0.1);
+    evidence.rotationResidual[0] = 2.0;  // two uncalibrated accelerometers
+    EXPECT_EQ(detectCables(skin, graph, evidence).at(0).kind, LinkKind::Adjacent);
+    evidence.rotationResidual[0] = 4.1;
+    const LinkVerdict verdict = detectCables(skin, graph, evidence).at(0);
+    EXPECT_EQ(verdict.kind, LinkKind::Cable);
+    EXPECT_EQ(verdict.reason, LinkReason::Movement);
+    EXPECT_THAT(verdict.explanation, HasSubstr("differ by 4.1 m/s², those of neighbours by 3.5 at most"));
+}
+
+TEST(DetectCables, WhatAnEarlierSolutionShowedCounts) {
+    const Skin skin = pairOfHexagons();
+    const SkinGraph graph = buildSkinGraph(skin);
+    CableEvidence evidence = noEvidence(graph);
+    evidence.R_a_b[0] = arranged(skin, graph.links()[0], 0.2, 0.1);
+    evidence.gap[0] = 23e-3;
+    const LinkVerdict apart = detectCables(skin, graph, evidence).at(0);
+    EXPECT_EQ(apart.reason, LinkReason::Gap);
+    EXPECT_THAT(apart.explanation, HasSubstr("23.0 mm apart, 5.0 at most"));
+    // Ports that met are neighbours, however far apart a false detection puts their LEDs.
+    evidence.gap[0] = 1e-3;
+    evidence.separation[0] = 7;
+    EXPECT_EQ(detectCables(skin, graph, evidence).at(0).kind, LinkKind::Adjacent);
+}
+
 TEST(DetectCables, PortsDecideWhatIsFlat) {
     // The same rotation is a flat neighbour through one pair of ports and a cable through another.
     Skin skin = test::looseModules(paperHexagon(), 2);
@@ -168,13 +197,15 @@ TEST(DetectCables, BrokenContractsThrow) {
     evidence.separation.clear();
     EXPECT_THROW((void)detectCables(skin, graph, evidence), std::logic_error);
 
-    std::vector<CableOptions> bad(6);
+    std::vector<CableOptions> bad(8);
     bad[0].maxBend = 0;
     bad[1].maxBend = 4;
     bad[2].maxTwist = -1;
     bad[3].maxTwist = 4;
     bad[4].maxSeparation = 1;
     bad[5].maxBend = std::nan("");
+    bad[6].maxRotationResidual = 0;
+    bad[7].maxGap = 0;
     EXPECT_TRUE(CableOptions{}.validate());
     for (const CableOptions& options : bad) {
         EXPECT_FALSE(options.validate());

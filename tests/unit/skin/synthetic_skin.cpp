@@ -102,9 +102,7 @@ Skin retold(Random& random, const Skin& skin) {
 }
 
 CableEvidence noEvidence(const SkinGraph& graph) {
-    CableEvidence evidence;
-    evidence.R_a_b.resize(graph.links().size());
-    evidence.separation.resize(graph.links().size());
+    CableEvidence evidence(graph.links().size());
     return evidence;
 }
 

@@ -1,0 +1,75 @@
+#include "core/estimation/missing_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace skincal {
+
+std::vector<PatchEvidence> patchEvidence(const SkinLayout& layout, const std::vector<PatchShape>& shapes,
+                                         const std::vector<PixelObservation>& pixels) {
+    std::vector<bool> hasPlace(layout.patchOf.size(), false);
+    for (std::size_t k = 0; k < layout.patches.size(); ++k) {
+        for (std::size_t i = 0; i < layout.patches[k].modules.size(); ++i)
+            hasPlace[layout.patches[k].modules[i]] = shapes[k].T_o_u[i].has_value();
+    }
+    struct Count {
+        std::size_t detected = 0, usable = 0;
+    };
+    std::map<std::pair<std::size_t, std::size_t>, Count> counts;  // by patch and view
+    for (const PixelObservation& o : pixels) {
+        Count& count = counts[{layout.patchOf[o.module], o.view}];
+        ++count.detected;
+        count.usable += hasPlace[o.module] ? 1 : 0;
+    }
+    std::vector<PatchEvidence> evidence(layout.patches.size());
+    for (const auto& [where, count] : counts) {
+        PatchEvidence& patch = evidence[where.first];
+        patch.mostDetected = std::max(patch.mostDetected, count.detected);
+        patch.mostUsable = std::max(patch.mostUsable, count.usable);
+    }
+    return evidence;
+}
+
+std::string whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed,
+                         bool anyPlaced) {
+    const std::string who = fmt::format("patch {} (origin {})", patch.id.value, skin.modules[patch.origin].id.value);
+    const auto enough = static_cast<std::size_t>(needed);
+    if (evidence.mostDetected == 0)
+        return who + " was seen in no view: add one that shows it beside a placed patch";
+    if (evidence.mostUsable < enough && evidence.mostDetected > evidence.mostUsable)
+        return fmt::format(
+            "{} showed {} LEDs in a view, but only {} of their modules have gravity readings that tell how they lie: "
+            "read their accelerometers in two poses or more that tilt the body differently",
+            who, evidence.mostDetected, evidence.mostUsable);
+    if (evidence.mostUsable < enough)
+        return fmt::format(
+            "{} showed at most {} LEDs in a view, {} are needed: move the camera closer or more in front of it", who,
+            evidence.mostUsable, needed);
+    const auto commonest = std::max_element(evidence.poseFailures.begin(), evidence.poseFailures.end(),
+                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (commonest != evidence.poseFailures.end() && commonest->first == ErrorCode::DegeneratePoints)
+        return who + " showed only LEDs in one line, which have no pose: add a view that shows more of it";
+    if (commonest != evidence.poseFailures.end() && commonest->first == ErrorCode::NoConsensus)
+        return who + " is nowhere where its shape explains the LEDs: its links, module types or detections are wrong";
+    if (!anyPlaced)
+        return who + " could be in two places in each view: add one that shows it more from the side";
+    return who + " was never seen with a placed patch: add a view that shows both";
+}
+
+std::string whyNotHeld(const Skin& skin, const std::vector<std::size_t>& modules) {
+    if (modules.empty())
+        return "";
+    constexpr std::size_t kNamed = 8;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(kNamed, modules.size()); ++i)
+        names += (i == 0 ? "" : ", ") + std::to_string(skin.modules[modules[i]].id.value);
+    if (modules.size() > kNamed)
+        names += fmt::format(" and {} more", modules.size() - kNamed);
+    return fmt::format(
+        "modules {}: no gravity readings tell how they lie, and links and pictures do not hold them: read their "
+        "accelerometers in two poses or more that tilt the body differently",
+        names);
+}
+
+}  // namespace skincal

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/estimation/body_adjustment.h"
+#include "core/estimation/patch_shape.h"
+#include "core/estimation/skin_layout.h"
+
+namespace skincal {
+
+/// What pictures and gravity told about one patch, to say what is missing where it could not be placed.
+struct PatchEvidence {
+    std::size_t mostDetected = 0;           ///< LEDs of its modules found in one view
+    std::size_t mostUsable = 0;             ///< those whose place in the patch is known
+    std::map<ErrorCode, int> poseFailures;  ///< why views with enough of them gave no pose
+};
+
+/// What the pictures show of each patch, without the failures.
+[[nodiscard]] std::vector<PatchEvidence> patchEvidence(const SkinLayout& layout, const std::vector<PatchShape>& shapes,
+                                                       const std::vector<PixelObservation>& pixels);
+
+/// What an operator has to do about a patch that could not be placed, in plain English.
+/// @param needed       LEDs that a pose needs.
+/// @param anyPlaced    false where nothing of the body could be placed.
+[[nodiscard]] std::string whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed,
+                                       bool anyPlaced);
+
+/// The same for modules of placed patches that nothing measured holds; empty where there are none.
+[[nodiscard]] std::string whyNotHeld(const Skin& skin, const std::vector<std::size_t>& modules);
+
+}  // namespace skincal

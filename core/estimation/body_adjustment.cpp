@@ -265,6 +265,19 @@ bool AdjustmentOptions::validate() const {
            pixelSigmaFloor_px > 0 && pixelLoss >= 0 && gravityLoss >= 0 && linkLoss >= 0 && maxIterations > 0;
 }
 
+std::vector<PixelObservation> flattenDetections(const Measurements& measurements) {
+    const auto index = measurements.skin.indexById();
+    std::vector<PixelObservation> pixels;
+    for (std::size_t v = 0; v < measurements.views.size(); ++v) {
+        for (const LedDetection& detection : measurements.views[v].found) {
+            const auto found = index.find(detection.module);
+            if (found != index.end())
+                pixels.push_back({v, found->second, detection.pixel, detection.sigma_px});
+        }
+    }
+    return pixels;
+}
+
 std::optional<Vector2d> pixelResidual(const AdjustmentInput& input, const BodyState& state,
                                       const PixelObservation& observation) {
     const auto& T_r_u = state.T_r_u[observation.module];

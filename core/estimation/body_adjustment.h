@@ -6,6 +6,7 @@
 
 #include "core/estimation/body_model.h"
 #include "core/estimation/gravity_table.h"
+#include "core/estimation/measurements.h"
 #include "core/geometry/error.h"
 #include "core/geometry/run_context.h"
 
@@ -34,6 +35,9 @@ struct PortPair {
     Vector3d port_a = Vector3d::Zero();
     Vector3d port_b = Vector3d::Zero();
 };
+
+/// All detections of known modules, in the order of the views.
+[[nodiscard]] std::vector<PixelObservation> flattenDetections(const Measurements& measurements);
 
 /// The measurements in the form the adjustment wants them.
 struct AdjustmentInput {

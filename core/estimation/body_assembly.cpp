@@ -203,19 +203,6 @@ void judge(BodyModel& body, Trust trustAtMost) {
 
 }  // namespace
 
-std::vector<PixelObservation> flattenDetections(const Measurements& measurements) {
-    const auto index = measurements.skin.indexById();
-    std::vector<PixelObservation> pixels;
-    for (std::size_t v = 0; v < measurements.views.size(); ++v) {
-        for (const LedDetection& detection : measurements.views[v].found) {
-            const auto found = index.find(detection.module);
-            if (found != index.end())
-                pixels.push_back({v, found->second, detection.pixel, detection.sigma_px});
-        }
-    }
-    return pixels;
-}
-
 BodyModel assembleBody(const Measurements& measurements, const GravityTable& gravity, const SkinLayout& layout,
                        const AdjustmentInput& input, const BodyEstimate& estimate) {
     BodyModel body;

@@ -30,9 +30,6 @@ struct BodyEstimate {
     Trust trustAtMost = Trust::Good;  ///< where the method knows of a reason for doubt
 };
 
-/// All detections of known modules, in the order of the views.
-[[nodiscard]] std::vector<PixelObservation> flattenDetections(const Measurements& measurements);
-
 /// Fills in verdicts, residuals, link distances and the quality figures, and says whether to trust the result.
 [[nodiscard]] BodyModel assembleBody(const Measurements& measurements, const GravityTable& gravity,
                                      const SkinLayout& layout, const AdjustmentInput& input,

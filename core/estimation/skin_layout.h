@@ -39,7 +39,7 @@ struct LayoutOptions {
                                                                  const std::vector<std::optional<Matrix3d>>& R_a_b,
                                                                  double tooLong, int minViews);
 
-/// Graph, cables by all evidence there is, patches with their origins (METHOD.md, section 2, steps 1 and 2).
+/// Graph, cables by all evidence there is, patches with their origins (paper, Algorithm 1).
 /// @param gaps  per link of the graph, how far apart its ports came out in an earlier solution (m); empty before the
 /// first.
 [[nodiscard]] SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity,

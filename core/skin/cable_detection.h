@@ -70,10 +70,10 @@ struct BendAndTwist {
 /// How R_a_b differs from the flat arrangement (swing-twist decomposition of R_a_b * flat^T about z).
 [[nodiscard]] BendAndTwist bendAndTwist(const Matrix3d& R_a_b, const Matrix3d& flat);
 
-/// Tells neighbours from cables by all the ways of METHOD.md: the operator's word, which beats everything but sense (no
-/// module is its own neighbour); links to the computer; relative rotations beyond the physical limit; distance in the
-/// pictures. Where several links claim one port, the one that the operator called a neighbour is taken, else the only
-/// one whose rotation was measured and fits, else none.
+/// Tells neighbours from cables by all the ways that the paper names and some more: the operator's word, which beats
+/// everything but sense (no module is its own neighbour); links to the computer; relative rotations beyond the physical
+/// limit; distance in the pictures. Where several links claim one port, the one that the operator called a neighbour is
+/// taken, else the only one whose rotation was measured and fits, else none.
 /// @return one verdict per link of the graph, in its order; the same whichever end of a link is called a.
 /// Throws std::logic_error where the evidence does not fit the graph or the options are out of range.
 [[nodiscard]] std::vector<LinkVerdict> detectCables(const Skin& skin, const SkinGraph& graph,

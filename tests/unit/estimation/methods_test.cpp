@@ -436,13 +436,14 @@ TEST(SturdyMethod, AnEmptySkinIsAnEmptyBody) {
 }
 
 TEST(SturdyMethod, OptionsOutOfRangeThrow) {
-    std::vector<SturdyMethodOptions> bad(6);
+    std::vector<SturdyMethodOptions> bad(7);
     bad[0].rejectionSigmas = 1;
-    bad[1].gravityRotationSigma = 0;
-    bad[2].pose.minInliers = 0;
-    bad[3].selection.maxDisagreement_rad = 0;
-    bad[4].averaging.iterations = 0;
+    bad[1].initial.gravityRotationSigma = 0;
+    bad[2].initial.pose.minInliers = 0;
+    bad[3].initial.selection.maxDisagreement_rad = 0;
+    bad[4].initial.averaging.iterations = 0;
     bad[5].adjustment.linkSigma = 0;
+    bad[6].initial.layout.minSeparationViews = 0;
     EXPECT_TRUE(SturdyMethodOptions{}.validate());
     for (const SturdyMethodOptions& options : bad)
         EXPECT_THROW((void)calibrateSturdy({}, options), std::logic_error);

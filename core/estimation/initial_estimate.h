@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "core/estimation/body_adjustment.h"
+#include "core/estimation/body_attachment.h"
+#include "core/estimation/candidate_selection.h"
+#include "core/estimation/gravity_alignment.h"
+#include "core/estimation/measurements.h"
+#include "core/estimation/missing_data.h"
+#include "core/estimation/patch_pose.h"
+#include "core/estimation/patch_shape.h"
+#include "core/estimation/pose_graph.h"
+#include "core/estimation/skin_layout.h"
+#include "core/estimation/view_alternatives.h"
+#include "core/geometry/run_context.h"
+
+namespace skincal {
+
+struct InitialEstimateOptions {
+    LayoutOptions layout;
+    PatchPoseOptions pose;
+    GravityAlignmentOptions gravity;
+    SelectionOptions selection;
+    PoseAveragingOptions averaging;
+    AdjustmentOptions shapes;                     ///< of the fit that gives patches their shapes
+    double gravityRotationSigma = 0.5 * kDegree;  ///< of a patch's rotation from gravity alone
+
+    [[nodiscard]] bool validate() const;
+};
+
+/// Where everything lies before the whole body is adjusted, and what is still open.
+struct InitialEstimate {
+    SkinLayout layout;
+    AdjustmentInput input;
+    PatchShapesResult shapes;
+    std::vector<PatchEvidence> evidence;  ///< per patch
+    GravityFrame gravityFrame;
+    GrowingBody body;
+    std::vector<ViewAlternative> alternatives;  ///< other places of views that nothing decided yet
+
+    /// Modules of placed patches and views in one frame.
+    [[nodiscard]] BodyState state() const;
+};
+
+/// The paper's pipeline without its weaknesses:
+///   1. patch shapes by least squares over gravity and link points, accelerometers calibrated on the way
+///   2. every pose that explains a patch in a view (two for a flat one), decided by gravity and by the other views
+///   3. body from a spanning tree over all views by quality, loops closed by rotation and translation averaging
+///   4. views and patches that the tree could not reach are attached through the whole body: views by all placed LEDs
+///      together, patches with few LEDs by triangulation with the rotation that gravity gives them
+/// @param gravity  of the same measurements; the result refers to both, they must outlive it.
+/// @param gaps     per link, how far apart its ports came out in an earlier solution; empty before the first.
+/// Fails with Cancelled. Throws std::logic_error where the options are out of range.
+[[nodiscard]] tl::expected<InitialEstimate, CalibrationError> estimateInitially(
+    const Measurements& measurements, const GravityTable& gravity, const std::vector<std::optional<double>>& gaps,
+    const InitialEstimateOptions& options = {}, const RunContext& context = {});
+
+}  // namespace skincal

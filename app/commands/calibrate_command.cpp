@@ -68,10 +68,12 @@ void addCalibrateCommand(CommandLine& line) {
     command->add_option("-o,--output", arguments->output,
                         "Where the body model goes; the recording's name with .body.json, here, unless given");
     command
-        ->add_option("--method", arguments->method,
-                     "sturdy: planar-safe poses, loops closed, outliers rejected; paper: the method of the IROS 2014 "
-                     "paper to the letter, as a baseline")
-        ->check(CLI::IsMember({"sturdy", "paper"}))
+        ->add_option(
+            "--method", arguments->method,
+            "sturdy: planar-safe poses, loops closed, outliers rejected; joint: that, then everything weighed by "
+            "what the residuals show, with covariances; paper: the method of the IROS 2014 paper to the "
+            "letter, as a baseline")
+        ->check(CLI::IsMember({"sturdy", "joint", "paper"}))
         ->capture_default_str();
     command->add_flag("--json", arguments->json, "Print the quality figures as JSON");
     command->footer(

@@ -58,6 +58,9 @@ struct AdjustmentOptions {
     double scaleSigma = 0.02;           ///< prior
     double gravity = kStandardGravity;  ///< m/s^2 where the readings were taken
     double pixelSigmaFloor_px = 0.03;   ///< no detection is believed better than this
+    /// What the standard deviations that come with detections and readings are multiplied with.
+    double pixelSigmaFactor = 1;
+    double accelerometerSigmaFactor = 1;
     /// Where a residual stops to count in full, in standard deviations (Cauchy); 0 for plain least squares.
     double pixelLoss = 3;
     double gravityLoss = 4;
@@ -98,22 +101,6 @@ struct Gauge {
                                                                           const Gauge& gauge,
                                                                           const AdjustmentOptions& options = {},
                                                                           const RunContext& context = {});
-
-/// Cramer-Rao bound at `truth`: covariance (rotation vector in the body frame, then translation; rad, m) of the poses
-/// of the given views, in the order given, as one matrix. Plain least squares, same gauge rules as adjustBody.
-/// Fails with DegeneratePoints where the data do not fix all unknowns.
-[[nodiscard]] tl::expected<Eigen::MatrixXd, CalibrationError> viewPoseBound(const AdjustmentInput& input,
-                                                                            const BodyState& truth,
-                                                                            const std::vector<std::size_t>& views,
-                                                                            const Gauge& gauge,
-                                                                            AdjustmentOptions options = {});
-
-/// The same for modules.
-[[nodiscard]] tl::expected<Eigen::MatrixXd, CalibrationError> modulePoseBound(const AdjustmentInput& input,
-                                                                              const BodyState& truth,
-                                                                              const std::vector<std::size_t>& modules,
-                                                                              const Gauge& gauge,
-                                                                              AdjustmentOptions options = {});
 
 /// Residual measured minus predicted of one detection, px; nothing where a pose is missing or the LED lies behind.
 [[nodiscard]] std::optional<Vector2d> pixelResidual(const AdjustmentInput& input, const BodyState& state,

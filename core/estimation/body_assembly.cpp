@@ -22,6 +22,8 @@ void addModules(const Measurements& m, const GravityTable& gravity, const SkinLa
         module.id = m.skin.modules[u].id;
         module.type = m.skin.templateOf(u).name;
         module.T_body_module = estimate.T_r_u[u];
+        if (!estimate.covariances.empty() && module.T_body_module)
+            module.covariance = estimate.covariances[u];
         if (!estimate.accelerometers.empty() && !gravity.of(u).empty())
             module.accelerometer = estimate.accelerometers[u];
     }

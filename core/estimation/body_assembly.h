@@ -22,8 +22,10 @@ struct BodyEstimate {
     std::vector<std::string> viewStatus;                   ///< per view
     std::vector<std::vector<std::size_t>> patchViews;      ///< per patch: views that have a say in its pose
     std::vector<AccelerometerCalibration> accelerometers;  ///< per module; empty where not estimated
-    std::vector<bool> rejected;                            ///< per entry of AdjustmentInput::pixels
-    std::vector<std::string> rejectedReason;               ///< likewise
+    /// Per module, body frame (BodyModule::covariance); empty where not estimated.
+    std::vector<std::optional<Matrix6d>> covariances;
+    std::vector<bool> rejected;               ///< per entry of AdjustmentInput::pixels
+    std::vector<std::string> rejectedReason;  ///< likewise
     std::map<std::string, double> condition;
     std::vector<std::string> warnings;
     std::vector<std::string> missing;

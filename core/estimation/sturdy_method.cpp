@@ -21,6 +21,7 @@ struct Run : InitialEstimate {
     const Measurements& measurements;
     const SturdyMethodOptions& options;
     const RunContext& context;
+    const Refinement& refine;
     BodyEstimate estimate;
 };
 
@@ -80,7 +81,10 @@ tl::expected<BodyState, CalibrationError> adjustGradually(Run& run, BodyState st
     run.estimate.condition["pixel noise factor"] = factor;
     run.estimate.condition["accelerometer sigma"] = options.accelerometerSigma;
     run.estimate.condition["adjustment iterations"] = iterations + result->summary.iterations;
-    return result->state;
+    if (!run.refine)
+        return result->state;
+    options.pixelSigmaFactor = factor;
+    return run.refine(run.input, result->state, Gauge{{fixedView}, {}}, options, run.estimate, run.context);
 }
 
 /// Modules that started flat for want of readings keep a pose only where the rest of the data came to hold it.
@@ -224,11 +228,11 @@ std::vector<LinkKind> kindsOf(const SkinLayout& layout) {
 /// One round with the links as they are judged now.
 tl::expected<Round, CalibrationError> solveRound(const Measurements& measurements, const GravityTable& gravity,
                                                  const LinkGaps& gaps, const SturdyMethodOptions& options,
-                                                 const RunContext& context) {
+                                                 const RunContext& context, const Refinement& refine) {
     auto initial = estimateInitially(measurements, gravity, gaps, options.initial, context);
     if (!initial)
         return tl::unexpected(initial.error());
-    Run run{std::move(*initial), measurements, options, context, {}};
+    Run run{std::move(*initial), measurements, options, context, refine, {}};
 
     BodyEstimate& estimate = run.estimate;
     estimate.method = "sturdy";
@@ -276,20 +280,20 @@ bool SturdyMethodOptions::validate() const {
 }
 
 tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& measurements,
-                                                          const SturdyMethodOptions& options,
-                                                          const RunContext& context) {
+                                                          const SturdyMethodOptions& options, const RunContext& context,
+                                                          const Refinement& refine) {
     if (!options.validate())
         throw std::logic_error("SturdyMethodOptions out of range");
     const GravityTable gravity(measurements.skin, measurements.gravity);
     LinkGaps gaps;
-    auto round = solveRound(measurements, gravity, gaps, options, context);
+    auto round = solveRound(measurements, gravity, gaps, options, context, refine);
     // A solution tells better than any single measurement which links are cables; so long as it does, solve again.
     for (int more = 0; round && more < options.maxRelinkings; ++more) {
         const auto before = kindsOf(layOutSkin(measurements, gravity, options.initial.layout, gaps));
         if (kindsOf(layOutSkin(measurements, gravity, options.initial.layout, round->gaps)) == before)
             break;
         gaps = round->gaps;
-        round = solveRound(measurements, gravity, gaps, options, context);
+        round = solveRound(measurements, gravity, gaps, options, context, refine);
     }
     if (!round)
         return tl::unexpected(round.error());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <tl/expected.hpp>
 
 #include "core/estimation/body_adjustment.h"
@@ -9,6 +10,16 @@
 #include "core/geometry/run_context.h"
 
 namespace skincal {
+
+struct BodyEstimate;
+
+/// A last step in place of none: a better state from one that is already near, with what is said about it.
+/// @param input     all detections, the rejected among them
+/// @param options   with the weights that the state was found with
+/// @param estimate  rejections and covariances may be changed, condition and warnings added
+using Refinement = std::function<tl::expected<BodyState, CalibrationError>(
+    const AdjustmentInput& input, BodyState state, const Gauge& gauge, const AdjustmentOptions& options,
+    BodyEstimate& estimate, const RunContext& context)>;
 
 struct SturdyMethodOptions {
     InitialEstimateOptions initial;
@@ -27,6 +38,7 @@ struct SturdyMethodOptions {
 /// Fails with Cancelled or NotConverged. Where nothing can be placed the body says so, with what is missing.
 [[nodiscard]] tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& measurements,
                                                                         const SturdyMethodOptions& options = {},
-                                                                        const RunContext& context = {});
+                                                                        const RunContext& context = {},
+                                                                        const Refinement& refine = {});
 
 }  // namespace skincal

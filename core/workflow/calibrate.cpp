@@ -44,11 +44,18 @@ void applyDecisions(const Recording& recording, ViewDetections& view) {
 }  // namespace
 
 std::string_view name(Method method) {
-    return method == Method::Paper ? "paper" : "sturdy";
+    switch (method) {
+        case Method::Paper:
+            return "paper";
+        case Method::Joint:
+            return "joint";
+        default:
+            return "sturdy";
+    }
 }
 
 std::optional<Method> methodFromName(std::string_view text) {
-    for (const Method method : {Method::Paper, Method::Sturdy}) {
+    for (const Method method : {Method::Paper, Method::Sturdy, Method::Joint}) {
         if (name(method) == text)
             return method;
     }
@@ -85,8 +92,9 @@ tl::expected<BodyModel, CalibrateError> calibrate(const Recording& recording, co
     const auto measurements = measure(recording, load, options, context);
     if (!measurements)
         return tl::unexpected(measurements.error());
-    auto body = options.method == Method::Paper ? calibratePaper(*measurements, options.paper, context)
-                                                : calibrateSturdy(*measurements, options.sturdy, context);
+    auto body = options.method == Method::Paper   ? calibratePaper(*measurements, options.paper, context)
+                : options.method == Method::Joint ? calibrateJoint(*measurements, options.joint, context)
+                                                  : calibrateSturdy(*measurements, options.sturdy, context);
     if (!body)
         return tl::unexpected(CalibrateError{body.error().message(), false, body.error().code == ErrorCode::Cancelled});
     body->generator.version = SKINCAL_VERSION;

@@ -6,6 +6,7 @@
 #include <tl/expected.hpp>
 
 #include "core/estimation/body_model.h"
+#include "core/estimation/joint_method.h"
 #include "core/estimation/measurements.h"
 #include "core/estimation/paper_method.h"
 #include "core/estimation/sturdy_method.h"
@@ -18,6 +19,7 @@ namespace skincal {
 enum class Method {
     Paper,   ///< the paper to the letter: the baseline
     Sturdy,  ///< without its weaknesses: the default
+    Joint,   ///< everything at once, weighed by what the residuals show, with covariances
 };
 
 [[nodiscard]] std::string_view name(Method method);
@@ -28,6 +30,7 @@ struct CalibrateOptions {
     PaperMethodOptions paper;
     PaperDetectorOptions paperDetector;
     SturdyMethodOptions sturdy;
+    JointMethodOptions joint;
     DecoderOptions decoder;
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/estimation/compare.h"
+#include "core/estimation/joint_method.h"
 #include "core/estimation/paper_method.h"
 #include "core/estimation/sturdy_method.h"
 #include "tests/unit/estimation/synthetic.h"
@@ -304,6 +305,45 @@ TEST(SturdyMethod, ReadingsInAnotherUnitAreNotTrusted) {
     const BodyModel body = calibrateSturdy(world.measurements).value();
     EXPECT_EQ(body.quality.trust, Trust::NotToBeTrusted);
     EXPECT_THAT(body.quality.warnings, testing::Contains(HasSubstr("their unit is not m/s²")));
+}
+
+TEST(JointMethod, WeighsByWhatItFindsAndKnowsHowGoodItIs) {
+    Random random(19, "joint");
+    SyntheticOptions options = mixedPatches();
+    options.views = 8;
+    options.poses = 12;
+    options.pixelNoise = 0.02;
+    options.accelerometerNoise = 0.1;
+    options.bias = 0.3;
+    options.scale = 0.01;
+    options.outliers = 0.08;
+    const SyntheticWorld world = makeWorld(random, options);
+    const BodyModel body = calibrateJoint(world.measurements).value();
+    EXPECT_EQ(body.generator.method, "joint");
+    EXPECT_EQ(body.quality.modulesPlaced, 18U);
+    EXPECT_NEAR(body.quality.condition.at("accelerometer sigma"), 0.1, 0.02);
+    for (std::size_t v = 0; v < body.views.size(); ++v) {
+        for (const BodyObservation& o : body.views[v].observations) {
+            const bool outlier = std::count(world.outliers.begin(), world.outliers.end(),
+                                            std::pair<std::size_t, ModuleId>{v, o.module}) > 0;
+            EXPECT_EQ(o.verdict == ObservationVerdict::Rejected, outlier);
+        }
+    }
+    const Isometry3d T_v_r = world.T_r_v[0].inverse();
+    for (std::size_t u = 0; u < body.modules.size(); ++u) {
+        ASSERT_TRUE(body.modules[u].covariance);
+        const Isometry3d truth = T_v_r * world.T_r_u[u];
+        const Isometry3d& found = *body.modules[u].T_body_module;
+        Vector6d error;
+        error << so3Log(found.linear() * truth.linear().transpose()), found.translation() - truth.translation();
+        // Five sigma, in each direction.
+        const Vector6d sigma = body.modules[u].covariance->diagonal().cwiseSqrt();
+        EXPECT_LT((error.cwiseQuotient(sigma)).cwiseAbs().maxCoeff(), 5) << u;
+    }
+    EXPECT_FALSE(calibrateSturdy(world.measurements)->modules[0].covariance);
+    JointMethodOptions bad;
+    bad.rejectionSigmas = 1;
+    EXPECT_THROW((void)calibrateJoint(world.measurements, bad), std::logic_error);
 }
 
 TEST(PaperMethod, OrderOfDetectionsMakesNoDifference) {

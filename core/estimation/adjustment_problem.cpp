@@ -1,0 +1,191 @@
+#include "core/estimation/adjustment_problem.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace skincal {
+namespace {
+
+PoseBlocks toBlocks(const Isometry3d& T) {
+    const Quaterniond q = Quaterniond(T.linear()).normalized();
+    return {{q.x(), q.y(), q.z(), q.w()}, {T.translation().x(), T.translation().y(), T.translation().z()}};
+}
+
+Isometry3d toPose(const PoseBlocks& blocks) {
+    const Quaterniond q(blocks.q[3], blocks.q[0], blocks.q[1], blocks.q[2]);
+    return makeIsometry(q.normalized().toRotationMatrix(), Vector3d(blocks.t.data()));
+}
+
+ceres::Problem::Options problemOptions() {
+    ceres::Problem::Options options;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+}
+
+std::unique_ptr<ceres::LossFunction> cauchy(double scale) {
+    return scale > 0 ? std::make_unique<ceres::CauchyLoss>(scale) : nullptr;
+}
+
+}  // namespace
+
+AdjustmentProblem::AdjustmentProblem(const AdjustmentInput& input, const BodyState& start,
+                                     const AdjustmentOptions& options)
+    : input_(input),
+      options_(options),
+      pixelLoss_(cauchy(options.pixelLoss)),
+      gravityLoss_(cauchy(options.gravityLoss)),
+      linkLoss_(cauchy(options.linkLoss)),
+      problem_(problemOptions()) {
+    copyIn(start);
+    addPixels(start);
+    addGravity(start);
+    addLinks(start);
+}
+
+void AdjustmentProblem::requireConsistent(const AdjustmentInput& input, const BodyState& state,
+                                          const AdjustmentOptions& options) {
+    if (!options.validate())
+        throw std::logic_error("AdjustmentOptions out of range");
+    if (input.skin == nullptr || input.gravity == nullptr || (input.camera == nullptr && !input.pixels.empty()) ||
+        state.T_r_u.size() != input.skin->modules.size() || state.accelerometers.size() != state.T_r_u.size() ||
+        input.gravityGroup.size() != state.T_r_u.size())
+        throw std::logic_error("adjustBody: state and input do not belong together");
+}
+
+BodyState AdjustmentProblem::withUpDirections(const AdjustmentInput& input, BodyState state) {
+    BodyState filled = state;
+    estimateUpDirections(input, filled);
+    if (state.up_r.size() != filled.up_r.size())
+        return filled;
+    for (std::size_t g = 0; g < filled.up_r.size(); ++g) {
+        for (std::size_t p = 0; p < filled.up_r[g].size(); ++p) {
+            if (state.up_r[g][p])
+                filled.up_r[g][p] = state.up_r[g][p];
+        }
+    }
+    return filled;
+}
+
+bool AdjustmentProblem::fix(const Gauge& gauge) {
+    bool any = false;
+    const auto hold = [&](PoseBlocks& pose) {
+        for (double* block : {pose.q.data(), pose.t.data()}) {
+            if (problem_.HasParameterBlock(block)) {
+                problem_.SetParameterBlockConstant(block);
+                any = true;
+            }
+        }
+    };
+    for (const std::size_t v : gauge.views)
+        hold(views_[v]);
+    for (const std::size_t u : gauge.modules)
+        hold(modules_[u]);
+    return any;
+}
+
+void AdjustmentProblem::copyOut(BodyState& state) const {
+    for (std::size_t u = 0; u < modules_.size(); ++u) {
+        if (state.T_r_u[u])
+            state.T_r_u[u] = toPose(modules_[u]);
+        state.accelerometers[u] = {Vector3d(bias_[u].data()), Vector3d(scale_[u].data())};
+    }
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+        if (state.T_r_v[v])
+            state.T_r_v[v] = toPose(views_[v]);
+    }
+    for (std::size_t g = 0; g < up_.size(); ++g) {
+        for (std::size_t p = 0; p < up_[g].size(); ++p) {
+            if (state.up_r[g][p])
+                state.up_r[g][p] = Vector3d(up_[g][p].data()).normalized();
+        }
+    }
+}
+
+void AdjustmentProblem::copyIn(const BodyState& start) {
+    modules_.resize(start.T_r_u.size());
+    bias_.resize(start.T_r_u.size());
+    scale_.resize(start.T_r_u.size());
+    for (std::size_t u = 0; u < modules_.size(); ++u) {
+        if (start.T_r_u[u])
+            modules_[u] = toBlocks(*start.T_r_u[u]);
+        Eigen::Map<Vector3d>(bias_[u].data()) = start.accelerometers[u].bias;
+        Eigen::Map<Vector3d>(scale_[u].data()) = start.accelerometers[u].scale;
+    }
+    views_.resize(start.T_r_v.size());
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+        if (start.T_r_v[v])
+            views_[v] = toBlocks(*start.T_r_v[v]);
+    }
+    up_.resize(start.up_r.size());
+    for (std::size_t g = 0; g < up_.size(); ++g) {
+        up_[g].resize(start.up_r[g].size());
+        for (std::size_t p = 0; p < up_[g].size(); ++p) {
+            if (start.up_r[g][p])
+                Eigen::Map<Vector3d>(up_[g][p].data()) = *start.up_r[g][p];
+        }
+    }
+}
+
+void AdjustmentProblem::addPixels(const BodyState& start) {
+    for (const PixelObservation& o : input_.pixels) {
+        if (!start.T_r_u[o.module] || !start.T_r_v[o.view] || !pixelResidual(input_, start, o))
+            continue;
+        const double sigma = options_.pixelSigmaFactor * std::max(o.sigma_px, options_.pixelSigmaFloor_px);
+        auto* cost = new ceres::AutoDiffCostFunction<LedPixelResidual, 2, 4, 3, 4, 3>(
+            new LedPixelResidual{input_.camera, o.pixel, input_.skin->templateOf(o.module).led, 1.0 / sigma});
+        residuals_.at(static_cast<std::size_t>(MeasurementKind::Pixel))
+            .push_back(problem_.AddResidualBlock(cost, pixelLoss_.get(), modules_[o.module].q.data(),
+                                                 modules_[o.module].t.data(), views_[o.view].q.data(),
+                                                 views_[o.view].t.data()));
+        problem_.SetManifold(modules_[o.module].q.data(), &quaternion_);
+        problem_.SetManifold(views_[o.view].q.data(), &quaternion_);
+    }
+}
+
+void AdjustmentProblem::addGravity(const BodyState& start) {
+    for (std::size_t u = 0; u < modules_.size(); ++u) {
+        if (!start.T_r_u[u] || input_.gravity->of(u).empty())
+            continue;
+        auto& up = up_[input_.gravityGroup[u]];
+        for (const GravityTable::Entry& entry : input_.gravity->of(u)) {
+            const double sigma =
+                entry.sigma ? *entry.sigma * options_.accelerometerSigmaFactor : options_.accelerometerSigma;
+            auto* cost = new ceres::AutoDiffCostFunction<GravityResidual, 3, 4, 3, 3, 3>(
+                new GravityResidual{entry.acceleration, options_.gravity, 1.0 / sigma});
+            residuals_.at(static_cast<std::size_t>(MeasurementKind::Gravity))
+                .push_back(problem_.AddResidualBlock(cost, gravityLoss_.get(), modules_[u].q.data(),
+                                                     up[entry.pose].data(), bias_[u].data(), scale_[u].data()));
+            problem_.SetManifold(up[entry.pose].data(), &sphere_);
+        }
+        problem_.SetManifold(modules_[u].q.data(), &quaternion_);
+        addPrior(MeasurementKind::Bias, bias_[u], Vector3d::Zero(), options_.biasSigma);
+        addPrior(MeasurementKind::Scale, scale_[u], Vector3d::Ones(), options_.scaleSigma);
+    }
+}
+
+void AdjustmentProblem::addPrior(MeasurementKind kind, Block3& block, const Vector3d& expected, double sigma) {
+    residuals_.at(static_cast<std::size_t>(kind))
+        .push_back(problem_.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<PriorResidual, 3, 3>(new PriorResidual{expected, 1.0 / sigma}), nullptr,
+            block.data()));
+    if (!options_.calibrateAccelerometers)
+        problem_.SetParameterBlockConstant(block.data());
+}
+
+void AdjustmentProblem::addLinks(const BodyState& start) {
+    for (const PortPair& link : input_.links) {
+        if (!start.T_r_u[link.a] || !start.T_r_u[link.b])
+            continue;
+        auto* cost = new ceres::AutoDiffCostFunction<LinkResidual, 3, 4, 3, 4, 3>(
+            new LinkResidual{link.port_a, link.port_b, 1.0 / options_.linkSigma});
+        residuals_.at(static_cast<std::size_t>(MeasurementKind::Link))
+            .push_back(problem_.AddResidualBlock(cost, linkLoss_.get(), modules_[link.a].q.data(),
+                                                 modules_[link.a].t.data(), modules_[link.b].q.data(),
+                                                 modules_[link.b].t.data()));
+        problem_.SetManifold(modules_[link.a].q.data(), &quaternion_);
+        problem_.SetManifold(modules_[link.b].q.data(), &quaternion_);
+    }
+}
+
+}  // namespace skincal

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+namespace skincal {
+
+using SparseCholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>>;
+
+/// Entries of the inverse of a sparse positive definite matrix where its Cholesky factor has entries, without the
+/// others:
+///   Z = A^-1,  Z_ij for all (i, j) in the pattern of L + L^T   (P A P^T = L L^T)
+/// Every nonzero of A is in it, so a covariance between any two unknowns that some measurement ties together. Time is
+/// of the order of the factorisation, memory of its factor. Ref: Takahashi, Fagan and Chin, 1973; Erisman and Tinney,
+/// Comm. ACM 18, 1975.
+class SelectedInverse {
+  public:
+    /// @param factor  factorised successfully.
+    explicit SelectedInverse(const SparseCholesky& factor);
+
+    /// Z_ij in the order of A. Throws std::out_of_range outside the pattern.
+    [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const;
+
+  private:
+    Eigen::VectorXi position_;           ///< of each unknown of A in the factor's order
+    Eigen::SparseMatrix<double> lower_;  ///< Z's lower triangle in the factor's order
+};
+
+}  // namespace skincal

@@ -48,7 +48,10 @@ bool canDraw(const std::string& name) {
     const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     ::dup2(null, STDOUT_FILENO);
     ::dup2(null, STDERR_FILENO);
-    ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "1280x1024x24", "-nolisten", "tcp", nullptr);
+    // Not to reset when the first client leaves: the one that asks whether it can draw leaves just before the one that
+    // does.
+    ::execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "1280x1024x24", "-nolisten", "tcp", "-noreset",
+             nullptr);
     ::_exit(127);
 }
 

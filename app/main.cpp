@@ -43,13 +43,11 @@ int runProgram(int argc, char** argv) {
     line.app.name("skincal");
     line.app.set_version_flag("--version", "skincal " SKINCAL_VERSION);
     line.app.require_subcommand(1);
-    line.app.footer(
-        "Start here:\n"
-        "  skincal demo                                   simulate a skin, calibrate it, look at the result\n"
-        "  skincal calibrate arm.skinrec -o arm.body.json  your own recording\n"
-        "  skincal export arm.body.json --format urdf -o arm.urdf\n\n"
-        "Exit codes: 0 done; 1 the data do not suffice (what is missing is printed); 2 bad input or usage.\n"
-        "Every command explains itself: skincal COMMAND --help.");
+    const std::string exitCodes =
+        "Exit codes: 0 done; 1 the data do not suffice (what is missing is printed), or the result is not to be "
+        "trusted;\n"
+        "2 bad input or usage.";
+    line.app.footer(exitCodes);  // of every command that has none of its own
     addDemoCommand(line);
     addCalibrateCommand(line);
     addSimulateCommand(line);
@@ -57,6 +55,12 @@ int runProgram(int argc, char** argv) {
     addRenderCommand(line);
     addExportCommand(line);
     addReproducePaperCommand(line);
+    line.app.footer(
+        "Start here:\n"
+        "  skincal demo                                    simulate a skin, calibrate it, look at the result\n"
+        "  skincal calibrate arm.skinrec -o arm.body.json  your own recording\n"
+        "  skincal export arm.body.json --format urdf -o arm.urdf\n\n" +
+        exitCodes + "\nEvery command explains itself: skincal COMMAND --help.");
     try {
         line.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

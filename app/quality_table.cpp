@@ -58,10 +58,10 @@ std::string qualityTable(const BodyModel& body) {
     text += fmt::format("gravity residual   {} rms\n", orDash(q.gravity_residual_rms, 1, 3, "m/s²"));
     text += fmt::format("method             {}\n", body.generator.method);
     text += fmt::format("verdict            {}\n", trustInWords(q.trust));
-    for (const std::string& warning : q.warnings)
-        text += fmt::format("warning: {}\n", printable(warning));
     for (const std::string& missing : q.missing)
         text += fmt::format("missing: {}\n", printable(missing));
+    for (const std::string& warning : q.warnings)
+        text += fmt::format("warning: {}\n", printable(warning));
     return text;
 }
 

@@ -20,12 +20,11 @@ outcome() {
 }
 
 {
-  echo "| recording | \`--method paper\` | default |"
-  echo "| --- | --- | --- |"
+  echo "| recording | \`--method paper\` | default | \`--method joint\` |"
+  echo "| --- | --- | --- | --- |"
   for recording in tests/data/recordings/*.skinrec; do
     name=$(basename "$recording" .skinrec)
-    [ "$name" = freeform-coded-one-view ] && continue  # a single view of a recording, for the decoder
-    echo "| ${name//-/ } | $(outcome "$recording" paper) | $(outcome "$recording" sturdy) |"
+    echo "| ${name//-/ } | $(outcome "$recording" paper) | $(outcome "$recording" sturdy) | $(outcome "$recording" joint) |"
   done
 } >"$work/recordings"
 "$skincal" reproduce-paper --trials "${1:-50}" >"$work/reproduce-paper"

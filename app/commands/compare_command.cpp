@@ -35,6 +35,10 @@ int runCompare(const CompareArguments& arguments) {
     const auto difference = compareBodies(found, real);
     if (!difference)
         return dataDoNotSuffice("nothing to compare: the body and the truth share no placed module");
+    const std::size_t strangers = found.size() - difference->compared;
+    if (strangers > 0)
+        fmt::print(stderr, "warning: {} of the {} placed modules are not in this truth: is it that of another skin?\n",
+                   strangers, found.size());
     if (arguments.json) {
         nlohmann::ordered_json json;
         json["modules"] = real.size();
@@ -62,7 +66,8 @@ void addCompareCommand(CommandLine& line) {
     CLI::App* command =
         line.app.add_subcommand("compare", "Compare a body model with the truth, after rigid alignment without scale");
     command->add_option("BODY", arguments->body, "A *.body.json file")->required();
-    command->add_option("TRUTH", arguments->truth, "The truth.json of a simulated recording")->required();
+    command->add_option("TRUTH", arguments->truth, "What simulate --truth wrote, or the truth.json beside a recording")
+        ->required();
     command->add_flag("--json", arguments->json, "Print as JSON (metres and radians)");
     command->callback([&line, arguments] { line.run = [arguments] { return runCompare(*arguments); }; });
 }

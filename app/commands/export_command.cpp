@@ -4,6 +4,7 @@
 
 #include "app/command_line.h"
 #include "app/outcome.h"
+#include "app/quality_table.h"
 #include "core/formats/body_json.h"
 #include "core/formats/export_csv.h"
 #include "core/formats/export_ply.h"
@@ -29,6 +30,8 @@ int runExport(const ExportArguments& arguments) {
             fmt::format("{} holds no placed module, there is nothing to export", printable(arguments.body.string())));
     if (const auto complaint = complaintAboutOutput(arguments.output, {arguments.body}))
         return badInput(*complaint);
+    if (body->quality.trust == Trust::NotToBeTrusted)
+        fmt::print(stderr, "warning: the verdict on this body is \"{}\"\n", trustInWords(body->quality.trust));
     std::string bytes;
     if (arguments.format == "urdf")
         bytes = exportUrdf(*body);

@@ -101,7 +101,8 @@ int runSimulate(const SimulateArguments& arguments) {
 
 void addSimulateCommand(CommandLine& line) {
     auto arguments = std::make_shared<SimulateArguments>();
-    CLI::App* command = line.app.add_subcommand("simulate", "Record a simulated skin, with the truth beside it");
+    CLI::App* command =
+        line.app.add_subcommand("simulate", "Record a simulated skin, and with --truth what is true of it");
     command->add_option("SCENARIO", arguments->scenario, "One of --list");
     command->add_option("-o,--output", arguments->output, "The *.skinrec directory to write");
     command->add_option("--truth", arguments->truth, "Also write what is true, for skincal compare");

@@ -5,6 +5,13 @@
 #include <algorithm>
 
 namespace skincal {
+namespace {
+
+std::string leds(std::size_t count) {
+    return fmt::format("{} LED{}", count, count == 1 ? "" : "s");
+}
+
+}  // namespace
 
 std::vector<PatchEvidence> patchEvidence(const SkinLayout& layout, const std::vector<PatchShape>& shapes,
                                          const std::vector<PixelObservation>& pixels) {
@@ -39,13 +46,19 @@ std::string whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEviden
         return who + " was seen in no view: add one that shows it beside a placed patch";
     if (evidence.mostUsable < enough && evidence.mostDetected > evidence.mostUsable)
         return fmt::format(
-            "{} showed {} LEDs in a view, but only {} of their modules have gravity readings that tell how they lie: "
-            "read their accelerometers in two poses or more that tilt the body differently",
-            who, evidence.mostDetected, evidence.mostUsable);
+            "{} showed {} in a view, but {} of their modules have gravity readings that tell how they lie: read their "
+            "accelerometers in two poses or more that tilt the body differently",
+            who, leds(evidence.mostDetected),
+            evidence.mostUsable == 0 ? "none" : fmt::format("only {}", evidence.mostUsable));
+    if (patch.modules.size() < enough)
+        return fmt::format(
+            "{} has {} of the {} LEDs that a pose takes: show it in two views or more in which other patches are "
+            "placed",
+            who, patch.modules.size(), needed);
     if (evidence.mostUsable < enough)
         return fmt::format(
-            "{} showed at most {} LEDs in a view, {} are needed: move the camera closer or more in front of it", who,
-            evidence.mostUsable, needed);
+            "{} showed at most {} in a view, {} are needed: move the camera closer or more in front of it", who,
+            leds(evidence.mostUsable), needed);
     const auto commonest = std::max_element(evidence.poseFailures.begin(), evidence.poseFailures.end(),
                                             [](const auto& a, const auto& b) { return a.second < b.second; });
     if (commonest != evidence.poseFailures.end() && commonest->first == ErrorCode::DegeneratePoints)

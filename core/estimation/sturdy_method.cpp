@@ -126,14 +126,16 @@ void reportMissing(Run& run, const BodyState& state) {
             estimate.patchStatus[k] = "placed";
             continue;
         }
-        estimate.patchStatus[k] = "not seen with a placed patch";
+        estimate.patchStatus[k] = run.evidence[k].mostDetected > 0 && run.evidence[k].mostUsable == 0
+                                      ? "gravity does not tell its shape"
+                                      : "not seen with a placed patch";
         estimate.missing.push_back(
             whyNotPlaced(skin, patch, run.evidence[k], run.options.initial.pose.minInliers, anyPlaced));
     }
     for (std::size_t v = 0; v < run.body.T_r_v.size(); ++v) {
         estimate.viewStatus[v] =
             run.body.T_r_v[v] ? "placed" : "shows no placed patch well enough, or could be in two places";
-        if (!run.body.T_r_v[v])
+        if (!run.body.T_r_v[v] && anyPlaced)
             estimate.warnings.push_back(
                 fmt::format("view {} is not used: it {}", run.measurements.views[v].name, estimate.viewStatus[v]));
     }

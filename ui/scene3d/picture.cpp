@@ -71,6 +71,8 @@ void addLegend(vtkRenderer& renderer, const BodyModel& body, const PictureOption
     if (body.quality.link_mismatch_rms)
         figures += fmt::format("link mismatch {:.2f} mm   ", *body.quality.link_mismatch_rms * 1e3);
     addText(renderer, figures + fmt::format("method {}", body.generator.method), size, left, 1.4 * size, soft);
+    if (body.quality.trust == Trust::NotToBeTrusted)
+        addText(renderer, "not to be trusted", size, left, 3.0 * size, {0.80, 0.13, 0.10}, true);
 }
 
 /// A bar of a round length (1, 2 or 5 times a power of ten), at most a sixth of the picture's width.

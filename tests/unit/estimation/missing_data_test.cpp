@@ -13,7 +13,7 @@ class WhyNotPlacedTest : public testing::Test {
     WhyNotPlacedTest() {
         skin_.templates = {paperHexagon()};
         skin_.modules = {{ModuleId(5), 0}, {ModuleId(7), 0}};
-        patch_.modules = {0, 1};
+        patch_.modules = {0, 1, 2, 3, 4};
     }
     std::string text(const PatchEvidence& evidence, bool anyPlaced = true) const {
         return whyNotPlaced(skin_, patch_, evidence, 4, anyPlaced);
@@ -28,6 +28,7 @@ TEST_F(WhyNotPlacedTest, SaysWhatToDo) {
               "patch 0 (origin 5) showed at most 3 LEDs in a view, 4 are needed: move the camera closer or more in "
               "front of it");
     EXPECT_THAT(text({9, 1, {}}), HasSubstr("showed 9 LEDs in a view, but only 1 of their modules have gravity"));
+    EXPECT_THAT(text({1, 0, {}}), HasSubstr("showed 1 LED in a view, but none of their modules have gravity"));
     EXPECT_THAT(text({9, 9, {{ErrorCode::DegeneratePoints, 2}, {ErrorCode::NoConsensus, 1}}}),
                 HasSubstr("only LEDs in one line"));
     EXPECT_THAT(text({9, 9, {{ErrorCode::NoConsensus, 3}}}), HasSubstr("nowhere where its shape explains the LEDs"));
@@ -35,8 +36,16 @@ TEST_F(WhyNotPlacedTest, SaysWhatToDo) {
     EXPECT_EQ(text({4, 4, {}}), "patch 0 (origin 5) was never seen with a placed patch: add a view that shows both");
 }
 
+TEST_F(WhyNotPlacedTest, AsksNoPatchForMoreLedsThanItHas) {
+    patch_.modules = {0, 1};
+    EXPECT_EQ(text({2, 2, {}}),
+              "patch 0 (origin 5) has 2 of the 4 LEDs that a pose takes: show it in two views or more in which other "
+              "patches are placed");
+}
+
 TEST_F(WhyNotPlacedTest, CountsWhatIsSeenAndWhatIsUsable) {
     SkinLayout layout;
+    patch_.modules = {0, 1};
     layout.patches = {patch_};
     layout.patchOf = {0, 0};
     PatchShape shape;

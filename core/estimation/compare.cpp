@@ -19,8 +19,8 @@ Isometry3d align(const std::vector<Pair>& pairs) {
     std::vector<Vector3d> from;
     std::vector<Vector3d> to;
     for (const Pair& pair : pairs) {
-        from.push_back(pair.body.translation());
-        to.push_back(pair.truth.translation());
+        from.emplace_back(pair.body.translation());
+        to.emplace_back(pair.truth.translation());
     }
     const auto centre = [](const std::vector<Vector3d>& points) {
         Vector3d sum = Vector3d::Zero();

@@ -32,6 +32,13 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
+/// For an XML comment, which must not hold two hyphens in a row.
+std::string withoutDoubleHyphens(std::string text) {
+    for (std::size_t i = 0; (i = text.find("--", i)) != std::string::npos;)
+        text.replace(i, 2, "- -");
+    return text;
+}
+
 /// R = Rz(yaw) Ry(pitch) Rx(roll), as URDF has it. Pitch and roll are read from Rz(-yaw) R, which stays well
 /// conditioned near the poles, where yaw is any and roll makes up for it.
 Vector3d rollPitchYaw(const Matrix3d& R) {
@@ -79,8 +86,10 @@ std::string exportUrdf(const BodyModel& body, const std::string& robotName) {
     std::map<std::string, const ModuleTemplate*> types;
     for (const ModuleTemplate& type : body.templates)
         types[type.name] = &type;
-    std::string urdf =
-        fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"skin_base\"/>\n", escaped(robotName));
+    std::string urdf = fmt::format(
+        "<?xml version=\"1.0\"?>\n<!-- Metres and radians. skin_base is the body frame, {}; module frames have z out "
+        "of the skin. -->\n<robot name=\"{}\">\n  <link name=\"skin_base\"/>\n",
+        withoutDoubleHyphens(escaped(body.body_frame)), escaped(robotName));
     std::map<PatchId, Isometry3d> patches;
     for (const BodyPatch& patch : body.patches) {
         if (!patch.T_body_patch)

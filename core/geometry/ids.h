@@ -12,7 +12,8 @@ struct StrongId {
     Int value{};
     constexpr StrongId() = default;
     constexpr explicit StrongId(Int v) : value(v) {}
-    friend constexpr auto operator<=>(const StrongId&, const StrongId&) = default;
+    // clang-tidy 14 takes the comparison's literal 0 for a pointer.
+    friend constexpr auto operator<=>(const StrongId&, const StrongId&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// The number a module bears in the network and in every file; positive, unique, with gaps.

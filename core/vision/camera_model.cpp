@@ -47,7 +47,7 @@ std::optional<Vector2d> CameraModel::project(const Vector3d& p_v) const {
 }
 
 Vector2d CameraModel::unproject(const Vector2d& pixel) const {
-    const Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
+    Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
     if (distortion.empty())
         return target;
     Vector2d p = target;

@@ -21,7 +21,7 @@ class FramePixels {
     /// The whole plane as 8-bit grey.
     [[nodiscard]] cv::Mat plane(int channel) const;
     [[nodiscard]] double value(int x, int y, int channel) const {
-        const std::uint8_t* pixel = picture_.ptr<std::uint8_t>(y) + x * picture_.channels();
+        const std::uint8_t* pixel = at(x, y);
         if (picture_.channels() == 1)
             return pixel[0];
         return channel >= 0 ? pixel[channel] : (pixel[0] + pixel[1] + pixel[2]) / 3.0;
@@ -29,7 +29,7 @@ class FramePixels {
     /// True where any channel that the plane is made of sits at the end of its range.
     [[nodiscard]] bool saturated(int x, int y, int channel) const {
         constexpr int kTop = 254;
-        const std::uint8_t* pixel = picture_.ptr<std::uint8_t>(y) + x * picture_.channels();
+        const std::uint8_t* pixel = at(x, y);
         if (picture_.channels() == 1)
             return pixel[0] >= kTop;
         return channel >= 0 ? pixel[channel] >= kTop : std::max(pixel[0], std::max(pixel[1], pixel[2])) >= kTop;
@@ -37,6 +37,10 @@ class FramePixels {
 
   private:
     explicit FramePixels(cv::Mat picture) : picture_(std::move(picture)) {}
+    [[nodiscard]] const std::uint8_t* at(int x, int y) const {
+        return picture_.ptr<std::uint8_t>(y) + static_cast<std::ptrdiff_t>(x) * picture_.channels();
+    }
+
     cv::Mat picture_;
 };
 

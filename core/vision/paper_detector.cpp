@@ -167,6 +167,7 @@ class Detector {
                 ofLed[*led].push_back(blob);
         }
         std::vector<Outcome> outcomes;
+        outcomes.reserve(ofLed.size());
         for (const auto& candidates : ofLed)
             outcomes.push_back(onlyBlob(candidates, options_, " of its colour"));
         return outcomes;

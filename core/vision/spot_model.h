@@ -34,6 +34,7 @@ class SpotResiduals {
     SpotResiduals(const std::vector<SpotPixel>& pixels, const SpotPrior& prior, double haloWidth)
         : pixels_(pixels), prior_(prior), haloWidth_(haloWidth) {}
 
+    // NOLINTNEXTLINE(readability-identifier-naming): Ceres' name
     [[nodiscard]] int NumResiduals() const { return static_cast<int>(pixels_.size()) + 2; }
 
     bool operator()(const double* parameters, double* residuals, double* jacobian) const {

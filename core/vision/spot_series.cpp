@@ -19,7 +19,7 @@ constexpr std::array<double, 3> kTap{1.0, 0.70665, 0.24935};
 double edgeLevel(const FramePixels& frame, const SpotCandidate& spot, int radius, int channel) {
     const cv::Size size = frame.size();
     std::vector<double> edge;
-    edge.reserve(static_cast<std::size_t>(8 * radius));
+    edge.reserve(8 * static_cast<std::size_t>(radius));
     const auto visit = [&](int x, int y) {
         if (x >= 0 && y >= 0 && x < size.width && y < size.height)
             edge.push_back(frame.value(x, y, channel));

@@ -3,8 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
-#include "core/estimation/measurements.h"
+#include "core/adjustment/body_adjustment.h"
+#include "core/adjustment/measurements.h"
+#include "core/estimation/body_model.h"
 #include "core/estimation/patch_shape.h"
 #include "core/estimation/skin_layout.h"
 

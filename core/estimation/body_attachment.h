@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
+#include "core/adjustment/body_adjustment.h"
 #include "core/estimation/candidate_selection.h"
 #include "core/estimation/patch_pose.h"
 #include "core/estimation/patch_sightings.h"

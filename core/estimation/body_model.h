@@ -5,16 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/adjustment/accelerometer.h"
 #include "core/skin/skin.h"
 #include "core/vision/camera_model.h"
 
 namespace skincal {
-
-/// Raw reading to specific force: a = (raw - bias) / scale, axis by axis.
-struct AccelerometerCalibration {
-    Vector3d bias = Vector3d::Zero();   ///< m/s^2
-    Vector3d scale = Vector3d::Ones();  ///< 1 is perfect
-};
 
 struct BodyModule {
     ModuleId id;

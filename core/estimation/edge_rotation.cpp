@@ -48,4 +48,26 @@ tl::expected<RelativeRotation, CalibrationError> estimateRelativeRotation(std::s
     return result;
 }
 
+tl::expected<RelativeRotation, CalibrationError> relativeRotation(const GravityTable& table, std::size_t a,
+                                                                  std::size_t b,
+                                                                  const RelativeRotationOptions& options) {
+    std::vector<Vector3d> g_a;
+    std::vector<Vector3d> g_b;
+    const auto ofA = table.of(a);
+    const auto ofB = table.of(b);
+    auto i = ofA.begin();
+    auto k = ofB.begin();
+    while (i != ofA.end() && k != ofB.end()) {
+        if (i->pose < k->pose) {
+            ++i;
+        } else if (k->pose < i->pose) {
+            ++k;
+        } else {
+            g_a.push_back((i++)->acceleration);
+            g_b.push_back((k++)->acceleration);
+        }
+    }
+    return estimateRelativeRotation(g_a, g_b, options);
+}
+
 }  // namespace skincal

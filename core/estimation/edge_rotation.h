@@ -3,6 +3,7 @@
 #include <span>
 #include <tl/expected.hpp>
 
+#include "core/adjustment/gravity_table.h"
 #include "core/geometry/error.h"
 #include "core/geometry/se3.h"
 
@@ -31,6 +32,10 @@ struct RelativeRotation {
 /// Ref: Schoenemann, Psychometrika 31, 1966; Kabsch, Acta Cryst. A32, 1976 (det = +1).
 [[nodiscard]] tl::expected<RelativeRotation, CalibrationError> estimateRelativeRotation(
     std::span<const Vector3d> g_c, std::span<const Vector3d> g_n, const RelativeRotationOptions& options = {});
+
+/// R_a_b of two modules from the poses that both have.
+[[nodiscard]] tl::expected<RelativeRotation, CalibrationError> relativeRotation(
+    const GravityTable& table, std::size_t a, std::size_t b, const RelativeRotationOptions& options = {});
 
 /// Largest angle between any two of the lines along the given vectors, [0, 90 degrees]: opposite directions are
 /// parallel. 0 for fewer than two.

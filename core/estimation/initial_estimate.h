@@ -4,11 +4,11 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
+#include "core/adjustment/body_adjustment.h"
+#include "core/adjustment/measurements.h"
 #include "core/estimation/body_attachment.h"
 #include "core/estimation/candidate_selection.h"
 #include "core/estimation/gravity_alignment.h"
-#include "core/estimation/measurements.h"
 #include "core/estimation/missing_data.h"
 #include "core/estimation/patch_pose.h"
 #include "core/estimation/patch_shape.h"

@@ -2,7 +2,7 @@
 
 #include <tl/expected.hpp>
 
-#include "core/estimation/adjustment_statistics.h"
+#include "core/adjustment/adjustment_statistics.h"
 #include "core/estimation/sturdy_method.h"
 
 namespace skincal {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
+#include "core/adjustment/body_adjustment.h"
 #include "core/estimation/patch_shape.h"
 #include "core/estimation/skin_layout.h"
 

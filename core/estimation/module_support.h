@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
+#include "core/adjustment/body_adjustment.h"
 
 namespace skincal {
 

@@ -2,8 +2,8 @@
 
 #include <tl/expected.hpp>
 
+#include "core/adjustment/measurements.h"
 #include "core/estimation/body_model.h"
-#include "core/estimation/measurements.h"
 #include "core/estimation/patch_pose.h"
 #include "core/estimation/skin_layout.h"
 #include "core/geometry/run_context.h"

@@ -29,7 +29,7 @@ std::optional<std::size_t> gravityReference(const GravityTable& gravity, const P
         if (gravity.of(u).size() > gravity.of(best).size())
             best = u;
     }
-    return gravity.relativeRotation(best, best) ? std::optional(best) : std::nullopt;
+    return relativeRotation(gravity, best, best) ? std::optional(best) : std::nullopt;
 }
 
 /// A starting shape: rotations straight from the reference's readings where both have the poses, else from those of the
@@ -41,7 +41,7 @@ void startShape(const Skin& skin, const SkinLayout& layout, const GravityTable& 
         return;
     // In a frame that is turned as the reference is, with the origin in the middle.
     auto& T_x_u = state.T_r_u;
-    const auto direct = [&](std::size_t u) { return gravity.relativeRotation(*reference, u); };
+    const auto direct = [&](std::size_t u) { return relativeRotation(gravity, *reference, u); };
     const auto fromOrigin = direct(patch.origin);
     T_x_u[patch.origin] = makeIsometry(fromOrigin ? fromOrigin->R_c_n : Matrix3d::Identity(), Vector3d::Zero());
     assumedFlat[patch.origin] = !fromOrigin;
@@ -51,7 +51,7 @@ void startShape(const Skin& skin, const SkinLayout& layout, const GravityTable& 
         Matrix3d R_x_c;
         if (const auto straight = direct(edge.child)) {
             R_x_c = straight->R_c_n;
-        } else if (const auto local = gravity.relativeRotation(edge.parent, edge.child)) {
+        } else if (const auto local = relativeRotation(gravity, edge.parent, edge.child)) {
             R_x_c = T_x_p.linear() * local->R_c_n;
             assumedFlat[edge.child] = assumedFlat[edge.parent];
         } else {
@@ -141,7 +141,7 @@ PatchShape chainPatchShape(const Skin& skin, const SkinLayout& layout, const Gra
     T_o_u.emplace(patch.origin, Isometry3d::Identity());
     for (const TreeEdge& edge : patch.tree) {
         const auto parent = T_o_u.find(edge.parent);
-        const auto rotation = gravity.relativeRotation(edge.parent, edge.child, options);
+        const auto rotation = relativeRotation(gravity, edge.parent, edge.child, options);
         if (parent == T_o_u.end() || !rotation)
             continue;
         const TreePorts ports = portsOf(skin, layout, edge);

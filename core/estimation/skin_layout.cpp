@@ -159,7 +159,7 @@ SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& grav
     if (!gaps.empty())
         evidence.gap = gaps;
     for (std::size_t l = 0; l < links.size(); ++l) {
-        if (const auto rotation = gravity.relativeRotation(links[l].a, links[l].b, options.rotation)) {
+        if (const auto rotation = relativeRotation(gravity, links[l].a, links[l].b, options.rotation)) {
             evidence.R_a_b[l] = rotation->R_c_n;
             evidence.rotationResidual[l] = rotation->residual_rms;
         }

@@ -3,8 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/estimation/gravity_table.h"
-#include "core/estimation/measurements.h"
+#include "core/adjustment/gravity_table.h"
+#include "core/adjustment/measurements.h"
+#include "core/estimation/edge_rotation.h"
 #include "core/skin/cable_detection.h"
 #include "core/skin/patches.h"
 #include "core/skin/skin_graph.h"

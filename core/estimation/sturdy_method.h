@@ -3,10 +3,10 @@
 #include <functional>
 #include <tl/expected.hpp>
 
-#include "core/estimation/body_adjustment.h"
+#include "core/adjustment/body_adjustment.h"
+#include "core/adjustment/measurements.h"
 #include "core/estimation/body_model.h"
 #include "core/estimation/initial_estimate.h"
-#include "core/estimation/measurements.h"
 #include "core/geometry/run_context.h"
 
 namespace skincal {

@@ -3,7 +3,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
+#include "core/adjustment/body_adjustment.h"
 
 namespace skincal {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/estimation/adjustment_statistics.h"
+#include "core/adjustment/adjustment_statistics.h"
 #include "core/estimation/patch_shape.h"
 
 namespace skincal {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
+#include "core/adjustment/body_adjustment.h"
+#include "core/adjustment/measurements.h"
 #include "core/estimation/body_model.h"
-#include "core/estimation/measurements.h"
 #include "core/simulation/world.h"
 
 namespace skincal {

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
+#include "core/adjustment/measurements.h"
 #include "core/estimation/body_model.h"
 #include "core/estimation/joint_method.h"
-#include "core/estimation/measurements.h"
 #include "core/estimation/paper_method.h"
 #include "core/estimation/sturdy_method.h"
 #include "core/formats/recording.h"

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "core/estimation/gravity_table.h"
+#include "core/adjustment/gravity_table.h"
 #include "core/geometry/random.h"
 
 namespace skincal {
@@ -183,11 +183,11 @@ TEST(GravityTable, UsesThePosesThatBothModulesHave) {
             readings.push_back({p, ModuleId(3), edge.g_n[i]});
     }
     const GravityTable table(twoModules(), readings);
-    const auto found = table.relativeRotation(0, 1);
+    const auto found = relativeRotation(table, 0, 1);
     ASSERT_TRUE(found);
     EXPECT_LT((found->R_c_n - edge.R_c_n).norm(), 1e-9);
-    EXPECT_LT((table.relativeRotation(1, 0).value().R_c_n - edge.R_c_n.transpose()).norm(), 1e-9);
-    EXPECT_EQ(GravityTable(twoModules(), {}).relativeRotation(0, 1).error().code, ErrorCode::TooFewPoses);
+    EXPECT_LT((relativeRotation(table, 1, 0).value().R_c_n - edge.R_c_n.transpose()).norm(), 1e-9);
+    EXPECT_EQ(relativeRotation(GravityTable(twoModules(), {}), 0, 1).error().code, ErrorCode::TooFewPoses);
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
-#include "core/estimation/measurements.h"
+#include "core/adjustment/body_adjustment.h"
+#include "core/adjustment/measurements.h"
 #include "core/estimation/patch_pose.h"
 #include "core/estimation/skin_layout.h"
 #include "core/geometry/random.h"

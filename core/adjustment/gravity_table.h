@@ -3,10 +3,8 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <tl/expected.hpp>
 #include <vector>
 
-#include "core/estimation/edge_rotation.h"
 #include "core/skin/skin.h"
 
 namespace skincal {
@@ -27,10 +25,6 @@ class GravityTable {
     [[nodiscard]] int poseNumber(std::size_t pose) const { return poseNumbers_[pose]; }
     /// In rising order of pose.
     [[nodiscard]] std::span<const Entry> of(std::size_t module) const { return entries_[module]; }
-
-    /// R_a_b from the poses that both modules have.
-    [[nodiscard]] tl::expected<RelativeRotation, CalibrationError> relativeRotation(
-        std::size_t a, std::size_t b, const RelativeRotationOptions& options = {}) const;
 
   private:
     std::vector<int> poseNumbers_;

@@ -1,8 +1,8 @@
-#include "core/estimation/adjustment_statistics.h"
+#include "core/adjustment/adjustment_statistics.h"
 
 #include <gtest/gtest.h>
 
-#include "core/estimation/selected_inverse.h"
+#include "core/adjustment/selected_inverse.h"
 #include "tests/unit/estimation/synthetic.h"
 
 namespace skincal {

@@ -1,4 +1,4 @@
-#include "core/estimation/residuals.h"
+#include "core/adjustment/residuals.h"
 
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/manifold.h>

@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/estimation/body_adjustment.h"
-#include "core/estimation/residuals.h"
+#include "core/adjustment/body_adjustment.h"
+#include "core/adjustment/residuals.h"
 
 namespace skincal {
 

@@ -1,4 +1,4 @@
-#include "core/estimation/body_adjustment.h"
+#include "core/adjustment/body_adjustment.h"
 
 #include <gtest/gtest.h>
 

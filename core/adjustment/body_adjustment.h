@@ -4,9 +4,9 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "core/estimation/body_model.h"
-#include "core/estimation/gravity_table.h"
-#include "core/estimation/measurements.h"
+#include "core/adjustment/accelerometer.h"
+#include "core/adjustment/gravity_table.h"
+#include "core/adjustment/measurements.h"
 #include "core/geometry/error.h"
 #include "core/geometry/run_context.h"
 

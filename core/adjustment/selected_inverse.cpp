@@ -1,4 +1,4 @@
-#include "core/estimation/selected_inverse.h"
+#include "core/adjustment/selected_inverse.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "core/estimation/gravity_table.h"
+#include "core/adjustment/gravity_table.h"
 
 #include <algorithm>
 
@@ -21,25 +21,6 @@ GravityTable::GravityTable(const Skin& skin, std::span<const GravityReading> rea
     }
     for (auto& list : entries_)
         std::sort(list.begin(), list.end(), [](const Entry& x, const Entry& y) { return x.pose < y.pose; });
-}
-
-tl::expected<RelativeRotation, CalibrationError> GravityTable::relativeRotation(
-    std::size_t a, std::size_t b, const RelativeRotationOptions& options) const {
-    std::vector<Vector3d> g_a;
-    std::vector<Vector3d> g_b;
-    auto i = entries_[a].begin();
-    auto k = entries_[b].begin();
-    while (i != entries_[a].end() && k != entries_[b].end()) {
-        if (i->pose < k->pose) {
-            ++i;
-        } else if (k->pose < i->pose) {
-            ++k;
-        } else {
-            g_a.push_back((i++)->acceleration);
-            g_b.push_back((k++)->acceleration);
-        }
-    }
-    return estimateRelativeRotation(g_a, g_b, options);
 }
 
 }  // namespace skincal

@@ -1,4 +1,4 @@
-#include "core/estimation/adjustment_problem.h"
+#include "core/adjustment/adjustment_problem.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "core/estimation/adjustment_statistics.h"
+#include "core/adjustment/adjustment_statistics.h"
 
 #include <ceres/ceres.h>
 
@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "core/estimation/adjustment_problem.h"
-#include "core/estimation/selected_inverse.h"
+#include "core/adjustment/adjustment_problem.h"
+#include "core/adjustment/selected_inverse.h"
 #include "core/geometry/random.h"
 
 namespace skincal {

@@ -88,7 +88,8 @@ void AdjustmentProblem::copyOut(BodyState& state) const {
     for (std::size_t u = 0; u < modules_.size(); ++u) {
         if (state.T_r_u[u])
             state.T_r_u[u] = toPose(modules_[u]);
-        state.accelerometers[u] = {Vector3d(bias_[u].data()), Vector3d(scale_[u].data())};
+        state.accelerometers[u] = {Vector3d(bias_[u].data()), Vector3d(scale_[u].data()),
+                                   Vector3d(misalignment_[u].data())};
     }
     for (std::size_t v = 0; v < views_.size(); ++v) {
         if (state.T_r_v[v])
@@ -106,11 +107,13 @@ void AdjustmentProblem::copyIn(const BodyState& start) {
     modules_.resize(start.T_r_u.size());
     bias_.resize(start.T_r_u.size());
     scale_.resize(start.T_r_u.size());
+    misalignment_.resize(start.T_r_u.size());
     for (std::size_t u = 0; u < modules_.size(); ++u) {
         if (start.T_r_u[u])
             modules_[u] = toBlocks(*start.T_r_u[u]);
         Eigen::Map<Vector3d>(bias_[u].data()) = start.accelerometers[u].bias;
         Eigen::Map<Vector3d>(scale_[u].data()) = start.accelerometers[u].scale;
+        Eigen::Map<Vector3d>(misalignment_[u].data()) = start.accelerometers[u].misalignment;
     }
     views_.resize(start.T_r_v.size());
     for (std::size_t v = 0; v < views_.size(); ++v) {
@@ -128,63 +131,78 @@ void AdjustmentProblem::copyIn(const BodyState& start) {
 }
 
 void AdjustmentProblem::addPixels(const BodyState& start) {
-    for (const PixelObservation& o : input_.pixels) {
+    for (std::size_t i = 0; i < input_.pixels.size(); ++i) {
+        const PixelObservation& o = input_.pixels[i];
         if (!start.T_r_u[o.module] || !start.T_r_v[o.view] || !pixelResidual(input_, start, o))
             continue;
-        const double sigma = options_.pixelSigmaFactor * std::max(o.sigma_px, options_.pixelSigmaFloor_px);
-        auto* cost = new ceres::AutoDiffCostFunction<LedPixelResidual, 2, 4, 3, 4, 3>(
-            new LedPixelResidual{input_.camera, o.pixel, input_.skin->templateOf(o.module).led, 1.0 / sigma});
-        residuals_.at(static_cast<std::size_t>(MeasurementKind::Pixel))
-            .push_back(problem_.AddResidualBlock(cost, pixelLoss_.get(), modules_[o.module].q.data(),
-                                                 modules_[o.module].t.data(), views_[o.view].q.data(),
-                                                 views_[o.view].t.data()));
-        problem_.SetManifold(modules_[o.module].q.data(), &quaternion_);
-        problem_.SetManifold(views_[o.view].q.data(), &quaternion_);
+        auto* cost = new ceres::AutoDiffCostFunction<LedPixelResidual, 2, 4, 3, 4, 3>(new LedPixelResidual{
+            input_.camera, o.pixel, input_.skin->templateOf(o.module).led, 1.0 / options_.sigmaOf(o)});
+        PoseBlocks& module = modules_[o.module];
+        PoseBlocks& view = views_[o.view];
+        keep(MeasurementKind::Pixel,
+             problem_.AddResidualBlock(cost, pixelLoss_.get(), module.q.data(), module.t.data(), view.q.data(),
+                                       view.t.data()),
+             i);
+        problem_.SetManifold(module.q.data(), &quaternion_);
+        problem_.SetManifold(view.q.data(), &quaternion_);
     }
+}
+
+void AdjustmentProblem::addReading(std::size_t u, std::size_t entry) {
+    const GravityTable::Entry& reading = input_.gravity->of(u)[entry];
+    auto* residual =
+        new GravityResidual{reading.acceleration, options_.gravity, 1.0 / input_.sigmaOf(u, reading, options_)};
+    double* up = up_[input_.gravityGroup[u]][reading.pose].data();
+    double* q = modules_[u].q.data();
+    keep(MeasurementKind::Gravity,
+         options_.misalignmentSigma > 0
+             ? problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<GravityResidual, 3, 4, 3, 3, 3, 3>(residual),
+                                         gravityLoss_.get(), q, up, bias_[u].data(), scale_[u].data(),
+                                         misalignment_[u].data())
+             : problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<GravityResidual, 3, 4, 3, 3, 3>(residual),
+                                         gravityLoss_.get(), q, up, bias_[u].data(), scale_[u].data()),
+         u, entry);
+    problem_.SetManifold(up, &sphere_);
 }
 
 void AdjustmentProblem::addGravity(const BodyState& start) {
     for (std::size_t u = 0; u < modules_.size(); ++u) {
         if (!start.T_r_u[u] || input_.gravity->of(u).empty())
             continue;
-        auto& up = up_[input_.gravityGroup[u]];
-        for (const GravityTable::Entry& entry : input_.gravity->of(u)) {
-            const double sigma =
-                entry.sigma ? *entry.sigma * options_.accelerometerSigmaFactor : options_.accelerometerSigma;
-            auto* cost = new ceres::AutoDiffCostFunction<GravityResidual, 3, 4, 3, 3, 3>(
-                new GravityResidual{entry.acceleration, options_.gravity, 1.0 / sigma});
-            residuals_.at(static_cast<std::size_t>(MeasurementKind::Gravity))
-                .push_back(problem_.AddResidualBlock(cost, gravityLoss_.get(), modules_[u].q.data(),
-                                                     up[entry.pose].data(), bias_[u].data(), scale_[u].data()));
-            problem_.SetManifold(up[entry.pose].data(), &sphere_);
-        }
+        for (std::size_t entry = 0; entry < input_.gravity->of(u).size(); ++entry)
+            addReading(u, entry);
         problem_.SetManifold(modules_[u].q.data(), &quaternion_);
-        addPrior(MeasurementKind::Bias, bias_[u], Vector3d::Zero(), options_.biasSigma);
-        addPrior(MeasurementKind::Scale, scale_[u], Vector3d::Ones(), options_.scaleSigma);
+        addPrior(MeasurementKind::Bias, u, bias_[u], Vector3d::Zero(), options_.biasSigma);
+        addPrior(MeasurementKind::Scale, u, scale_[u], Vector3d::Ones(), options_.scaleSigma);
+        if (options_.misalignmentSigma > 0)
+            addPrior(MeasurementKind::Misalignment, u, misalignment_[u], Vector3d::Zero(), options_.misalignmentSigma);
     }
 }
 
-void AdjustmentProblem::addPrior(MeasurementKind kind, Block3& block, const Vector3d& expected, double sigma) {
-    residuals_.at(static_cast<std::size_t>(kind))
-        .push_back(problem_.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<PriorResidual, 3, 3>(new PriorResidual{expected, 1.0 / sigma}), nullptr,
-            block.data()));
+void AdjustmentProblem::addPrior(MeasurementKind kind, std::size_t u, Block3& block, const Vector3d& expected,
+                                 double sigma) {
+    keep(kind,
+         problem_.AddResidualBlock(
+             new ceres::AutoDiffCostFunction<PriorResidual, 3, 3>(new PriorResidual{expected, 1.0 / sigma}), nullptr,
+             block.data()),
+         u);
     if (!options_.calibrateAccelerometers)
         problem_.SetParameterBlockConstant(block.data());
 }
 
 void AdjustmentProblem::addLinks(const BodyState& start) {
-    for (const PortPair& link : input_.links) {
+    for (std::size_t l = 0; l < input_.links.size(); ++l) {
+        const PortPair& link = input_.links[l];
         if (!start.T_r_u[link.a] || !start.T_r_u[link.b])
             continue;
         auto* cost = new ceres::AutoDiffCostFunction<LinkResidual, 3, 4, 3, 4, 3>(
             new LinkResidual{link.port_a, link.port_b, 1.0 / options_.linkSigma});
-        residuals_.at(static_cast<std::size_t>(MeasurementKind::Link))
-            .push_back(problem_.AddResidualBlock(cost, linkLoss_.get(), modules_[link.a].q.data(),
-                                                 modules_[link.a].t.data(), modules_[link.b].q.data(),
-                                                 modules_[link.b].t.data()));
-        problem_.SetManifold(modules_[link.a].q.data(), &quaternion_);
-        problem_.SetManifold(modules_[link.b].q.data(), &quaternion_);
+        PoseBlocks& a = modules_[link.a];
+        PoseBlocks& b = modules_[link.b];
+        keep(MeasurementKind::Link,
+             problem_.AddResidualBlock(cost, linkLoss_.get(), a.q.data(), a.t.data(), b.q.data(), b.t.data()), l);
+        problem_.SetManifold(a.q.data(), &quaternion_);
+        problem_.SetManifold(b.q.data(), &quaternion_);
     }
 }
 

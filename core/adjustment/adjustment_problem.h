@@ -23,9 +23,18 @@ struct PoseBlocks {
 };
 
 /// What a residual block was made of.
-enum class MeasurementKind { Pixel, Gravity, Link, Bias, Scale };
-inline constexpr std::array kMeasurementKinds{MeasurementKind::Pixel, MeasurementKind::Gravity, MeasurementKind::Link,
-                                              MeasurementKind::Bias, MeasurementKind::Scale};
+enum class MeasurementKind { Pixel, Gravity, Link, Bias, Scale, Misalignment };
+inline constexpr std::array kMeasurementKinds{MeasurementKind::Pixel, MeasurementKind::Gravity,
+                                              MeasurementKind::Link,  MeasurementKind::Bias,
+                                              MeasurementKind::Scale, MeasurementKind::Misalignment};
+
+/// A residual block and what it was made of: pixels and links by their position in the input, the others by module and,
+/// for readings, the position among the module's own.
+struct ResidualOf {
+    ceres::ResidualBlockId id = nullptr;
+    std::size_t index = 0;
+    std::size_t entry = 0;
+};
 
 /// Lives as long as one solve.
 class AdjustmentProblem {
@@ -44,7 +53,7 @@ class AdjustmentProblem {
     ceres::Problem& ceres() { return problem_; }
     PoseBlocks& module(std::size_t i) { return modules_[i]; }
     PoseBlocks& view(std::size_t i) { return views_[i]; }
-    [[nodiscard]] const std::vector<ceres::ResidualBlockId>& residuals(MeasurementKind kind) const {
+    [[nodiscard]] const std::vector<ResidualOf>& residuals(MeasurementKind kind) const {
         return residuals_.at(static_cast<std::size_t>(kind));
     }
 
@@ -52,10 +61,14 @@ class AdjustmentProblem {
 
   private:
     void copyIn(const BodyState& start);
+    void keep(MeasurementKind kind, ceres::ResidualBlockId id, std::size_t index, std::size_t entry = 0) {
+        residuals_.at(static_cast<std::size_t>(kind)).push_back({id, index, entry});
+    }
     void addPixels(const BodyState& start);
     void addGravity(const BodyState& start);
     void addLinks(const BodyState& start);
-    void addPrior(MeasurementKind kind, Block3& block, const Vector3d& expected, double sigma);
+    void addReading(std::size_t module, std::size_t entry);
+    void addPrior(MeasurementKind kind, std::size_t module, Block3& block, const Vector3d& expected, double sigma);
 
     const AdjustmentInput& input_;
     const AdjustmentOptions& options_;
@@ -63,8 +76,9 @@ class AdjustmentProblem {
     std::vector<PoseBlocks> views_;
     std::vector<Block3> bias_;
     std::vector<Block3> scale_;
+    std::vector<Block3> misalignment_;
     std::vector<std::vector<Block3>> up_;
-    std::array<std::vector<ceres::ResidualBlockId>, kMeasurementKinds.size()> residuals_;
+    std::array<std::vector<ResidualOf>, kMeasurementKinds.size()> residuals_;
     ceres::EigenQuaternionManifold quaternion_;
     ceres::SphereManifold<3> sphere_;
     std::unique_ptr<ceres::LossFunction> pixelLoss_;

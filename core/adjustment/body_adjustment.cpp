@@ -24,9 +24,15 @@ class StopWhenCancelled final : public ceres::IterationCallback {
 }  // namespace
 
 bool AdjustmentOptions::validate() const {
-    return accelerometerSigma > 0 && linkSigma > 0 && biasSigma > 0 && scaleSigma > 0 && gravity > 0 &&
-           pixelSigmaFloor_px > 0 && pixelSigmaFactor > 0 && accelerometerSigmaFactor > 0 && pixelLoss >= 0 &&
-           gravityLoss >= 0 && linkLoss >= 0 && maxIterations > 0;
+    return accelerometerSigma > 0 && linkSigma > 0 && biasSigma > 0 && scaleSigma > 0 && misalignmentSigma >= 0 &&
+           gravity > 0 && pixelSigmaFloor_px > 0 && pixelSigmaFactor > 0 && accelerometerSigmaFactor > 0 &&
+           pixelLoss >= 0 && gravityLoss >= 0 && linkLoss >= 0 && maxIterations > 0;
+}
+
+double AdjustmentInput::sigmaOf(std::size_t u, const GravityTable::Entry& reading,
+                                const AdjustmentOptions& options) const {
+    const double own = reading.sigma ? *reading.sigma * options.accelerometerSigmaFactor : options.accelerometerSigma;
+    return own * (poseNoise.empty() ? 1 : poseNoise[reading.pose]) * (moduleNoise.empty() ? 1 : moduleNoise[u]);
 }
 
 std::vector<PixelObservation> flattenDetections(const Measurements& measurements) {
@@ -66,8 +72,7 @@ std::vector<Vector3d> gravityResiduals(const AdjustmentInput& input, const BodyS
         const auto& up = state.up_r[input.gravityGroup[module]][entry.pose];
         if (!up)
             continue;
-        const Vector3d a = gravity * (T_r_u->linear().transpose() * *up);
-        residuals.emplace_back(entry.acceleration - c.bias - c.scale.cwiseProduct(a));
+        residuals.emplace_back(entry.acceleration - c.reading(gravity * (T_r_u->linear().transpose() * *up)));
     }
     return residuals;
 }
@@ -84,8 +89,9 @@ void estimateUpDirections(const AdjustmentInput& input, BodyState& state) {
             continue;
         const AccelerometerCalibration& calibration = state.accelerometers[u];
         for (const GravityTable::Entry& entry : input.gravity->of(u)) {
-            const Vector3d a = (entry.acceleration - calibration.bias).cwiseQuotient(calibration.scale);
-            sum[input.gravityGroup[u]][entry.pose] += state.T_r_u[u]->linear() * a;
+            const double weight = input.moduleNoise.empty() ? 1 : 1 / (input.moduleNoise[u] * input.moduleNoise[u]);
+            sum[input.gravityGroup[u]][entry.pose] +=
+                weight * (state.T_r_u[u]->linear() * calibration.specificForce(entry.acceleration));
             told[input.gravityGroup[u]][entry.pose] = true;
         }
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <tl/expected.hpp>
 #include <vector>
@@ -39,23 +40,13 @@ struct PortPair {
 /// All detections of known modules, in the order of the views.
 [[nodiscard]] std::vector<PixelObservation> flattenDetections(const Measurements& measurements);
 
-/// The measurements in the form the adjustment wants them.
-struct AdjustmentInput {
-    const Skin* skin = nullptr;
-    const CameraModel* camera = nullptr;  ///< may be null where there are no pixels
-    const GravityTable* gravity = nullptr;
-    std::vector<PixelObservation> pixels;
-    std::vector<PortPair> links;
-    /// Modules of one group hung from the same gravity direction in every pose: all of them where the body was posed
-    /// as one rigid piece, each patch by itself where its joints moved between poses.
-    std::vector<std::size_t> gravityGroup;
-};
-
 struct AdjustmentOptions {
-    double accelerometerSigma = 0.03;   ///< m/s^2 per axis, where the reading brings none
-    double linkSigma = 0.5e-3;          ///< m, mechanical play of a link point
-    double biasSigma = 0.5;             ///< m/s^2, prior
-    double scaleSigma = 0.02;           ///< prior
+    double accelerometerSigma = 0.03;  ///< m/s^2 per axis, where the reading brings none
+    double linkSigma = 0.5e-3;         ///< m, mechanical play of a link point
+    double biasSigma = 0.5;            ///< m/s^2, prior
+    double scaleSigma = 0.02;          ///< prior
+    /// rad, prior on how the accelerometer sits askew on its board; 0 where that is not estimated.
+    double misalignmentSigma = 0;
     double gravity = kStandardGravity;  ///< m/s^2 where the readings were taken
     double pixelSigmaFloor_px = 0.03;   ///< no detection is believed better than this
     /// What the standard deviations that come with detections and readings are multiplied with.
@@ -68,7 +59,30 @@ struct AdjustmentOptions {
     bool calibrateAccelerometers = true;
     int maxIterations = 100;
 
+    /// Standard deviation that a detection counts with, px per axis.
+    [[nodiscard]] double sigmaOf(const PixelObservation& o) const {
+        return pixelSigmaFactor * std::max(o.sigma_px, pixelSigmaFloor_px);
+    }
     [[nodiscard]] bool validate() const;
+};
+
+/// The measurements in the form the adjustment wants them.
+struct AdjustmentInput {
+    const Skin* skin = nullptr;
+    const CameraModel* camera = nullptr;  ///< may be null where there are no pixels
+    const GravityTable* gravity = nullptr;
+    std::vector<PixelObservation> pixels;
+    std::vector<PortPair> links;
+    /// Modules of one group hung from the same gravity direction in every pose: all of them where the body was posed
+    /// as one rigid piece, each patch by itself where its joints moved between poses.
+    std::vector<std::size_t> gravityGroup;
+    /// How much worse than the others the readings of a pose and those of a module are; empty where all are alike.
+    std::vector<double> poseNoise{};
+    std::vector<double> moduleNoise{};
+
+    /// Standard deviation that a reading of module u counts with, m/s^2 per axis.
+    [[nodiscard]] double sigmaOf(std::size_t u, const GravityTable::Entry& reading,
+                                 const AdjustmentOptions& options) const;
 };
 
 struct AdjustmentSummary {
@@ -107,7 +121,7 @@ struct Gauge {
                                                     const PixelObservation& observation);
 
 /// Residuals of all calibrated readings of module u whose pose has an up direction, m/s^2:
-///   a - (s g R_r_u^T up + b)
+///   a - (s M g R_r_u^T up + b)
 [[nodiscard]] std::vector<Vector3d> gravityResiduals(const AdjustmentInput& input, const BodyState& state,
                                                      std::size_t module, double gravity = kStandardGravity);
 

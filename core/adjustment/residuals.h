@@ -4,6 +4,8 @@
 /// its standard deviation, so that half the sum of squares is the negative log likelihood up to a constant.
 /// Poses are blocks of a unit quaternion (Eigen order x y z w, rotation into the body frame) and a translation (m).
 
+#include <ceres/rotation.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -36,7 +38,8 @@ struct LedPixelResidual {
     }
 };
 
-/// Accelerometer of module u at rest in pose p:  a = scale * (g R_r_u^T up_r_p) + bias + noise, axis by axis.
+/// Accelerometer of module u at rest in pose p:  a = scale * (M g R_r_u^T up_r_p) + bias + noise, axis by axis. M turns
+/// by the rotation vector `misalignment`; where there is none the chip sits square on its board.
 struct GravityResidual {
     Vector3d acceleration;
     double gravity;  ///< |g|, m/s^2
@@ -49,6 +52,18 @@ struct GravityResidual {
         const Vector3 a_u = R_r_u.conjugate() * (Eigen::Map<const Vector3>(up_r) * T(gravity));
         for (int i = 0; i < 3; ++i)
             residual[i] = weight * (scale[i] * a_u[i] + bias[i] - acceleration[i]);
+        return true;
+    }
+    template <class T>
+    bool operator()(const T* q_r_u, const T* up_r, const T* bias, const T* scale, const T* misalignment,
+                    T* residual) const {
+        using Vector3 = Eigen::Matrix<T, 3, 1>;
+        const Eigen::Map<const Eigen::Quaternion<T>> R_r_u(q_r_u);
+        const Vector3 a_u = R_r_u.conjugate() * (Eigen::Map<const Vector3>(up_r) * T(gravity));
+        Vector3 a_c;
+        ceres::AngleAxisRotatePoint(misalignment, a_u.data(), a_c.data());
+        for (int i = 0; i < 3; ++i)
+            residual[i] = weight * (scale[i] * a_c[i] + bias[i] - acceleration[i]);
         return true;
     }
 };
@@ -72,7 +87,7 @@ struct LinkResidual {
     }
 };
 
-/// Three numbers near an expected value: the prior on an accelerometer's bias or scale.
+/// Three numbers near an expected value: the prior on an accelerometer's bias, scale or misalignment.
 struct PriorResidual {
     Vector3d expected;
     double weight;

@@ -49,7 +49,7 @@ bool reweight(const NoiseFactors& factors, double tolerance, AdjustmentOptions& 
 }  // namespace
 
 bool JointMethodOptions::validate() const {
-    return start.validate() && noise.validate() && rejectionSigmas > 1 && maxReweightings > 0 && weightTolerance > 0 &&
+    return start.validate() && review.validate() && rejectionSigmas > 1 && maxReweightings > 0 && weightTolerance > 0 &&
            losses > 0;
 }
 
@@ -75,18 +75,18 @@ tl::expected<BodyModel, CalibrationError> calibrateJoint(const Measurements& mea
             if (!result)
                 return tl::unexpected(result.error());
             state = std::move(result->state);
-            const auto factors = estimateNoise(kept, state, gauge, weights, options.noise);
+            const auto factors = reviewSolution(kept, state, gauge, weights, options.review);
             if (!factors)
                 return state;
-            if (reweight(*factors, options.weightTolerance, weights))
+            if (reweight(factors->noise, options.weightTolerance, weights))
                 break;
         }
         const AdjustmentInput kept = withoutOutliers(input, state, weights, options.rejectionSigmas, estimate);
         auto result = adjustBody(kept, state, gauge, weights, part);
         if (!result)
             return tl::unexpected(result.error());
-        if (auto covariances = moduleCovariances(kept, result->state, gauge, weights))
-            estimate.covariances = std::move(*covariances);
+        if (auto last = reviewSolution(kept, result->state, gauge, weights, options.review))
+            estimate.covariances = std::move(last->covariances);
         estimate.condition["pixel noise factor"] = weights.pixelSigmaFactor;
         estimate.condition["accelerometer sigma"] = weights.accelerometerSigma;
         estimate.condition["link sigma"] = weights.linkSigma;

@@ -2,14 +2,14 @@
 
 #include <tl/expected.hpp>
 
-#include "core/adjustment/adjustment_statistics.h"
+#include "core/adjustment/solution_review.h"
 #include "core/estimation/sturdy_method.h"
 
 namespace skincal {
 
 struct JointMethodOptions {
     SturdyMethodOptions start;
-    NoiseEstimateOptions noise;
+    ReviewOptions review;
     /// Detections farther from the result than this many of their estimated standard deviations are rejected: by chance
     /// it happens to one of 250,000.
     double rejectionSigmas = 5.0;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/adjustment/adjustment_statistics.h"
+#include "core/adjustment/pose_covariance.h"
 #include "core/estimation/patch_shape.h"
 
 namespace skincal {
@@ -118,8 +118,9 @@ std::optional<double> boundOf(const World& world, const Measurements& measuremen
     std::vector<std::size_t> moving;
     for (std::size_t i = views ? 0 : 1; i < (views ? world.T_r_v.size() : world.T_r_u.size()); ++i)
         moving.push_back(i);
-    const auto covariance = views ? viewPoseBound(input, truth, moving, Gauge{{}, {0}}, options)
-                                  : modulePoseBound(input, truth, moving, Gauge{{}, {0}}, options);
+    options.pixelLoss = options.gravityLoss = options.linkLoss = 0;
+    const auto covariance =
+        poseCovariance(input, truth, views ? PosesOf::Views : PosesOf::Modules, moving, Gauge{{}, {0}}, options);
     if (!covariance)
         return std::nullopt;
     Eigen::MatrixXd J(function(world.T_r_v, world.T_r_u).size(), covariance->cols());

@@ -1,0 +1,76 @@
+#include "core/adjustment/linearisation.h"
+
+namespace skincal {
+namespace {
+
+/// rho'(s) of the loss that the adjustment puts on a kind of measurement.
+double lossWeight(MeasurementKind kind, double squares, const AdjustmentOptions& options) {
+    const double scale = kind == MeasurementKind::Pixel     ? options.pixelLoss
+                         : kind == MeasurementKind::Gravity ? options.gravityLoss
+                         : kind == MeasurementKind::Link    ? options.linkLoss
+                                                            : 0;
+    return scale > 0 ? 1 / (1 + squares / (scale * scale)) : 1;
+}
+
+/// A pivot that is nothing but rounding against the unknown's own information: others take all of it.
+bool isSingular(const SparseCholesky& factor, const Eigen::SparseMatrix<double>& H) {
+    constexpr double kRounding = 1e-12;
+    const Eigen::VectorXd pivots = Eigen::SparseMatrix<double>(factor.matrixL()).diagonal().cwiseAbs2();
+    Eigen::VectorXd information = H.diagonal();
+    if (factor.permutationP().indices().size() > 0)
+        information = factor.permutationP() * information;
+    return (pivots.array() < kRounding * information.array()).any();
+}
+
+}  // namespace
+
+std::optional<std::array<Eigen::Index, 6>> Linearisation::columnsOf(const PoseBlocks& pose) const {
+    const auto q = column.find(pose.q.data());
+    const auto t = column.find(pose.t.data());
+    if (q == column.end() || t == column.end())
+        return std::nullopt;
+    return std::array{q->second, q->second + 1, q->second + 2, t->second, t->second + 1, t->second + 2};
+}
+
+bool linearise(AdjustmentProblem& problem, const AdjustmentOptions& options, Linearisation& result) {
+    ceres::Problem::EvaluateOptions evaluate;
+    evaluate.apply_loss_function = false;
+    std::vector<double*> blocks;
+    problem.ceres().GetParameterBlocks(&blocks);
+    Eigen::Index columns = 0;
+    for (double* block : blocks) {
+        if (problem.ceres().IsParameterBlockConstant(block))
+            continue;
+        evaluate.parameter_blocks.push_back(block);
+        result.column[block] = columns;
+        columns += problem.ceres().ParameterBlockTangentSize(block);
+    }
+    Eigen::Index rows = 0;
+    for (const MeasurementKind kind : kMeasurementKinds) {
+        for (const ResidualOf& source : problem.residuals(kind)) {
+            const Eigen::Index size = problem.ceres().GetCostFunctionForResidualBlock(source.id)->num_residuals();
+            evaluate.residual_blocks.push_back(source.id);
+            result.blocks.push_back({kind, source, rows, size, 1});
+            rows += size;
+        }
+    }
+    std::vector<double> residuals;
+    ceres::CRSMatrix crs;
+    if (!problem.ceres().Evaluate(evaluate, nullptr, &residuals, nullptr, &crs))
+        return false;
+    result.residuals = Eigen::Map<const Eigen::VectorXd>(residuals.data(), rows);
+    result.J = Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
+        crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()), crs.rows.data(), crs.cols.data(),
+        crs.values.data());
+    Eigen::VectorXd weights(rows);
+    for (LinearisedBlock& block : result.blocks) {
+        block.weight = lossWeight(block.kind, result.residuals.segment(block.row, block.size).squaredNorm(), options);
+        weights.segment(block.row, block.size).setConstant(block.weight);
+    }
+    const Eigen::SparseMatrix<double> H =
+        result.J.transpose() * Eigen::SparseMatrix<double>(weights.asDiagonal() * result.J);
+    result.factor.compute(H);
+    return result.factor.info() == Eigen::Success && !isSingular(result.factor, H);
+}
+
+}  // namespace skincal

@@ -1,0 +1,141 @@
+#include "core/adjustment/solution_review.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/adjustment/linearisation.h"
+
+namespace skincal {
+namespace {
+
+/// Small and dense: a measurement has at most three numbers and depends on some sixteen.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 24>;
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+
+/// J C J^T of one measurement.
+Small forecastCovariance(const Linearisation& linear, const LinearisedBlock& block, const SelectedInverse& inverse) {
+    using RowIterator = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
+    std::array<Eigen::Index, 24> columns{};
+    Eigen::Index count = 0;
+    for (RowIterator it(linear.J, block.row); it; ++it)
+        columns.at(static_cast<std::size_t>(count++)) = it.col();
+    Rows J = Rows::Zero(block.size, count);
+    for (Eigen::Index r = 0; r < block.size; ++r) {
+        // Ceres writes all columns of a block in every row, in the same order.
+        Eigen::Index c = 0;
+        for (RowIterator it(linear.J, block.row + r); it; ++it)
+            J(r, c++) = it.value();
+    }
+    Rows JC = Rows::Zero(block.size, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        for (Eigen::Index j = 0; j <= i; ++j) {
+            const double C = inverse(columns.at(static_cast<std::size_t>(i)), columns.at(static_cast<std::size_t>(j)));
+            JC.col(i) += C * J.col(j);
+            if (i != j)
+                JC.col(j) += C * J.col(i);
+        }
+    }
+    return JC * J.transpose();
+}
+
+MeasurementReview reviewOf(const Linearisation& linear, const LinearisedBlock& block, const SelectedInverse& inverse) {
+    const Eigen::Vector3d padded = [&] {
+        Eigen::Vector3d r = Eigen::Vector3d::Zero();
+        r.head(block.size) = linear.residuals.segment(block.row, block.size);
+        return r;
+    }();
+    const auto r = padded.head(block.size);
+    const double w = block.weight;
+    const Small P = forecastCovariance(linear, block, inverse);
+    const Small I = Small::Identity(block.size, block.size);
+    MeasurementReview review;
+    review.squares = w * r.squaredNorm();
+    review.redundancy = std::max(0.0, w * (static_cast<double>(block.size) - w * P.trace()));
+    // What nothing else checks can't disagree; the least redundancy keeps the quotient finite.
+    constexpr double kUnchecked = 1e-6;
+    const Small own = I - w * P + kUnchecked * I;
+    const Small all = I + (1 - w) * P;
+    review.disagreement = std::max(0.0, r.dot(all.partialPivLu().solve(own.partialPivLu().solve(Eigen::VectorXd(r)))));
+    return review;
+}
+
+struct Sums {
+    double squares = 0;
+    double redundancy = 0;
+};
+
+double factorOf(const Sums& sums, double prior) {
+    return std::sqrt((sums.squares + prior) / (sums.redundancy + prior));
+}
+
+const tl::unexpected<CalibrationError> kDegenerate(CalibrationError{ErrorCode::DegeneratePoints, {}});
+
+std::optional<Matrix6d> covarianceOf(AdjustmentProblem& problem, std::size_t u, const Linearisation& linear,
+                                     const SelectedInverse& inverse) {
+    const PoseBlocks& pose = problem.module(u);
+    const auto columns = linear.columnsOf(pose);
+    if (!columns) {
+        const bool held =
+            problem.ceres().HasParameterBlock(pose.q.data()) && problem.ceres().HasParameterBlock(pose.t.data());
+        return held ? std::optional<Matrix6d>(Matrix6d::Zero()) : std::nullopt;
+    }
+    Matrix6d C;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+        for (Eigen::Index j = 0; j < 6; ++j)
+            C(i, j) = tangentFactor(i) * tangentFactor(j) *
+                      inverse(columns->at(static_cast<std::size_t>(i)), columns->at(static_cast<std::size_t>(j)));
+    }
+    return C;
+}
+
+}  // namespace
+
+tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentInput& input, const BodyState& state,
+                                                              const Gauge& gauge, const AdjustmentOptions& options,
+                                                              const ReviewOptions& review) {
+    if (!review.validate())
+        throw std::logic_error("ReviewOptions out of range");
+    AdjustmentProblem::requireConsistent(input, state, options);
+    const BodyState complete = AdjustmentProblem::withUpDirections(input, state);
+    AdjustmentProblem problem(input, complete, options);
+    Linearisation linear;
+    if (!problem.fix(gauge) || !linearise(problem, options, linear))
+        return kDegenerate;
+    const SelectedInverse inverse(linear.factor);
+
+    SolutionReview result;
+    result.pixels.resize(input.pixels.size());
+    result.links.resize(input.links.size());
+    result.gravity.resize(state.T_r_u.size());
+    for (std::size_t u = 0; u < state.T_r_u.size(); ++u)
+        result.gravity[u].resize(input.gravity->of(u).size());
+    std::array<Sums, kMeasurementKinds.size()> sums{};
+    for (const LinearisedBlock& block : linear.blocks) {
+        const MeasurementReview own = reviewOf(linear, block, inverse);
+        Sums& sum = sums.at(static_cast<std::size_t>(block.kind));
+        sum.squares += own.squares;
+        sum.redundancy += own.redundancy;
+        if (block.kind == MeasurementKind::Pixel)
+            result.pixels[block.source.index] = own;
+        else if (block.kind == MeasurementKind::Link)
+            result.links[block.source.index] = own;
+        else if (block.kind == MeasurementKind::Gravity)
+            result.gravity[block.source.index][block.source.entry] = own;
+    }
+    const auto factor = [&](MeasurementKind kind) {
+        return factorOf(sums.at(static_cast<std::size_t>(kind)), review.priorMeasurements);
+    };
+    result.noise = {factor(MeasurementKind::Pixel), factor(MeasurementKind::Gravity),
+                    factor(MeasurementKind::Link),  factor(MeasurementKind::Bias),
+                    factor(MeasurementKind::Scale), factor(MeasurementKind::Misalignment)};
+    result.covariances.resize(state.T_r_u.size());
+    for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
+        if (state.T_r_u[u])
+            result.covariances[u] = covarianceOf(problem, u, linear, inverse);
+    }
+    return result;
+}
+
+}  // namespace skincal

@@ -136,7 +136,7 @@ void AdjustmentProblem::addPixels(const BodyState& start) {
         if (!start.T_r_u[o.module] || !start.T_r_v[o.view] || !pixelResidual(input_, start, o))
             continue;
         auto* cost = new ceres::AutoDiffCostFunction<LedPixelResidual, 2, 4, 3, 4, 3>(new LedPixelResidual{
-            input_.camera, o.pixel, input_.skin->templateOf(o.module).led, 1.0 / options_.sigmaOf(o)});
+            input_.camera, o.pixel, input_.skin->templateOf(o.module).led, 1.0 / input_.sigmaOf(o, options_)});
         PoseBlocks& module = modules_[o.module];
         PoseBlocks& view = views_[o.view];
         keep(MeasurementKind::Pixel,

@@ -29,6 +29,11 @@ bool AdjustmentOptions::validate() const {
            pixelLoss >= 0 && gravityLoss >= 0 && linkLoss >= 0 && maxIterations > 0;
 }
 
+double AdjustmentInput::sigmaOf(const PixelObservation& o, const AdjustmentOptions& options) const {
+    const double own = options.pixelSigmaFactor * std::max(o.sigma_px, options.pixelSigmaFloor_px);
+    return own * (viewNoise.empty() ? 1 : viewNoise[o.view]);
+}
+
 double AdjustmentInput::sigmaOf(std::size_t u, const GravityTable::Entry& reading,
                                 const AdjustmentOptions& options) const {
     const double own = reading.sigma ? *reading.sigma * options.accelerometerSigmaFactor : options.accelerometerSigma;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <tl/expected.hpp>
 #include <vector>
@@ -35,6 +34,7 @@ struct PortPair {
     std::size_t b = 0;
     Vector3d port_a = Vector3d::Zero();
     Vector3d port_b = Vector3d::Zero();
+    std::size_t link = 0;  ///< whose ports these are, in the order of whoever made the pairs
 };
 
 /// All detections of known modules, in the order of the views.
@@ -59,10 +59,6 @@ struct AdjustmentOptions {
     bool calibrateAccelerometers = true;
     int maxIterations = 100;
 
-    /// Standard deviation that a detection counts with, px per axis.
-    [[nodiscard]] double sigmaOf(const PixelObservation& o) const {
-        return pixelSigmaFactor * std::max(o.sigma_px, pixelSigmaFloor_px);
-    }
     [[nodiscard]] bool validate() const;
 };
 
@@ -76,10 +72,14 @@ struct AdjustmentInput {
     /// Modules of one group hung from the same gravity direction in every pose: all of them where the body was posed
     /// as one rigid piece, each patch by itself where its joints moved between poses.
     std::vector<std::size_t> gravityGroup;
-    /// How much worse than the others the readings of a pose and those of a module are; empty where all are alike.
+    /// How much worse than the others the readings of a pose, those of a module and the detections of a view are; empty
+    /// where all are alike.
     std::vector<double> poseNoise{};
     std::vector<double> moduleNoise{};
+    std::vector<double> viewNoise{};
 
+    /// Standard deviation that a detection counts with, px per axis.
+    [[nodiscard]] double sigmaOf(const PixelObservation& o, const AdjustmentOptions& options) const;
     /// Standard deviation that a reading of module u counts with, m/s^2 per axis.
     [[nodiscard]] double sigmaOf(std::size_t u, const GravityTable::Entry& reading,
                                  const AdjustmentOptions& options) const;

@@ -33,7 +33,9 @@ void addModules(const Measurements& m, const GravityTable& gravity, const SkinLa
             BodyModule& module = body.modules[patch.modules[i]];
             module.patch = patch.id;
             module.T_patch_module = estimate.shapes[k].T_o_u[i];
-            if (module.T_body_module)
+            if (!estimate.moduleTrouble.empty() && !estimate.moduleTrouble[patch.modules[i]].empty())
+                module.status = estimate.moduleTrouble[patch.modules[i]];
+            else if (module.T_body_module)
                 module.status = "placed";
             else if (!estimate.shapes[k].T_o_u[i])
                 module.status = "orientation unknown: no usable gravity readings";
@@ -67,14 +69,15 @@ void addLinks(const Measurements& m, const SkinLayout& layout, const BodyEstimat
         BodyLink out;
         out.link = {m.skin.modules[link.a].id, link.a_port, m.skin.modules[link.b].id, link.b_port, link.decided};
         out.kind = layout.verdicts[l].kind;
-        out.reason = layout.verdicts[l].explanation;
+        const bool trouble = !estimate.linkTrouble.empty() && !estimate.linkTrouble[l].empty();
+        out.reason = trouble ? estimate.linkTrouble[l] : layout.verdicts[l].explanation;
         const auto& T_r_a = estimate.T_r_u[link.a];
         const auto& T_r_b = estimate.T_r_u[link.b];
         if (T_r_a && T_r_b) {
             const Vector3d a = *T_r_a * m.skin.port(link.a, link.a_port);
             const Vector3d b = *T_r_b * m.skin.port(link.b, link.b_port);
             out.distance = (a - b).norm();
-            if (out.kind == LinkKind::Adjacent) {
+            if (out.kind == LinkKind::Adjacent && !trouble) {
                 squares += *out.distance * *out.distance;
                 largest = std::max(largest, *out.distance);
                 ++count;
@@ -116,6 +119,7 @@ void addViews(const Measurements& m, const AdjustmentInput& input, const BodySta
                          : !estimate.T_r_u[o.module] ? "its module has no pose"
                                                      : "its module lies behind the camera";
         } else {
+            body.modules[o.module].seen = true;
             squares[o.view] += out.residual->squaredNorm();
             ++counts[o.view];
         }
@@ -214,6 +218,8 @@ BodyModel assembleBody(const Measurements& measurements, const GravityTable& gra
     body.quality.condition = estimate.condition;
     body.quality.warnings = estimate.warnings;
     body.quality.missing = estimate.missing;
+    body.quality.findings = estimate.findings;
+    body.quality.stages = estimate.stages;
 
     BodyState state;
     state.T_r_u = estimate.T_r_u;

@@ -27,9 +27,16 @@ struct BodyEstimate {
     std::vector<std::optional<Matrix6d>> covariances;
     std::vector<bool> rejected;               ///< per entry of AdjustmentInput::pixels
     std::vector<std::string> rejectedReason;  ///< likewise
+    /// Likewise: why a detection does not count wherever it lies, being part of a finding; empty where it does.
+    std::vector<std::string> setAside;
+    std::vector<std::string> moduleTrouble;  ///< per module: why it has no pose though its patch has; empty where none
+    std::vector<std::string> linkTrouble;    ///< per link of the graph: why a neighbour does not count as one
     std::map<std::string, double> condition;
     std::vector<std::string> warnings;
     std::vector<std::string> missing;
+    std::vector<Finding> findings;
+    std::vector<StageReport> stages;
+    std::size_t undecidedViews = 0;   ///< that could be in two places as well as not
     Trust trustAtMost = Trust::Good;  ///< where the method knows of a reason for doubt
 };
 

@@ -20,6 +20,8 @@ struct BodyModule {
     std::optional<Matrix6d> covariance;       ///< rotation vector then translation, body frame, rad and m
     std::optional<AccelerometerCalibration> accelerometer;
     std::string status;  ///< "placed", or why not
+    /// What its pose rests on: false where no picture that counts shows it, but links and gravity alone.
+    bool seen = false;
 };
 
 struct BodyPatch {
@@ -57,6 +59,31 @@ struct BodyView {
     std::string status;  ///< "placed", or why not
 };
 
+/// Something that disagrees with the rest of what was measured, and does not count in the result.
+struct Finding {
+    enum class Kind {
+        WrongLink,           ///< reported between ports that do not meet, or a cable that looked like a neighbour
+        MovedModule,         ///< since gravity was read
+        WrongTemplate,       ///< the module is of another type than the skin says
+        ShakenPose,          ///< the body did not rest while gravity was read
+        NoisyAccelerometer,  ///< far worse than the others
+        BumpedView,          ///< the camera was moved half-way through the scan
+        UnsteadyView,        ///< far less exact than the other views
+    };
+    Kind kind{};
+    std::vector<ModuleId> modules{};
+    std::optional<std::string> view{};
+    std::optional<int> pose{};
+    std::string text;  ///< plain English, with the numbers that decided
+};
+
+/// What a stage of the computation took. Not part of the file: it differs from run to run.
+struct StageReport {
+    std::string stage;
+    double seconds = 0;
+    int iterations = 0;  ///< of the solver, where it solves
+};
+
 enum class Trust { Good, Usable, NotToBeTrusted };
 
 /// The figures a person needs to trust or refuse the result.
@@ -70,6 +97,8 @@ struct BodyQuality {
     std::map<std::string, double> condition;     ///< of each estimate, by name
     std::vector<std::string> warnings;
     std::vector<std::string> missing;  ///< what the data lack for the modules that are not placed
+    std::vector<Finding> findings;
+    std::vector<StageReport> stages;
     Trust trust = Trust::Good;
 };
 

@@ -11,7 +11,6 @@ namespace {
 
 /// Everything that is known between the steps.
 struct Work : InitialEstimate {
-    const Measurements& measurements;
     const InitialEstimateOptions& options;
     const RunContext& context;
     std::vector<PatchSighting> sightings;
@@ -25,7 +24,7 @@ void findCandidates(Work& run) {
         if (run.context.isCancelled())
             return;
         SightingCandidates candidates{sighting.view, sighting.patch, {}};
-        auto poses = estimatePatchPoses(sighting.leds, run.measurements.camera, run.options.pose);
+        auto poses = estimatePatchPoses(sighting.leds, run.measurements->camera, run.options.pose);
         if (poses)
             candidates.poses = std::move(*poses);
         else if (poses.error().code != ErrorCode::TooFewPoints)
@@ -36,7 +35,7 @@ void findCandidates(Work& run) {
 
 /// Nodes of the pose graph: views first, then patches, then the frame that gravity gives.
 std::vector<PoseEdge> sightingEdges(const Work& run, const std::vector<Selection>& selections) {
-    const std::size_t views = run.measurements.views.size();
+    const std::size_t views = run.measurements->views.size();
     std::vector<PoseEdge> edges;
     for (std::size_t s = 0; s < run.candidates.size(); ++s) {
         if (!selections[s].candidate || selections[s].undecided)
@@ -60,7 +59,7 @@ std::vector<PoseEdge> sightingEdges(const Work& run, const std::vector<Selection
 
 /// The connected part that holds the most modules, by its nodes; empty where no patch has a pose.
 std::vector<bool> largestPart(const Work& run, const std::vector<PoseEdge>& edges) {
-    const std::size_t views = run.measurements.views.size();
+    const std::size_t views = run.measurements->views.size();
     const std::size_t nodes = views + run.layout.patches.size();
     const auto part = connectedParts(nodes, edges);
     std::vector<std::size_t> modules(nodes, 0);
@@ -78,7 +77,7 @@ std::vector<bool> largestPart(const Work& run, const std::vector<PoseEdge>& edge
 }
 
 void placeByGraph(Work& run, const std::vector<Selection>& selections) {
-    const std::size_t views = run.measurements.views.size();
+    const std::size_t views = run.measurements->views.size();
     const std::size_t patches = run.layout.patches.size();
     auto edges = sightingEdges(run, selections);
     const auto inside = largestPart(run, edges);
@@ -128,7 +127,7 @@ void attachRest(Work& run) {
         changed = false;
         for (std::size_t v = 0; v < run.body.T_r_v.size(); ++v) {
             if (!run.body.T_r_v[v]) {
-                run.body.T_r_v[v] = resectView(run.sightings, v, run.body, run.measurements.camera, run.options.pose,
+                run.body.T_r_v[v] = resectView(run.sightings, v, run.body, run.measurements->camera, run.options.pose,
                                                run.options.selection.decisiveCostRatio);
                 changed = changed || run.body.T_r_v[v].has_value();
             }
@@ -136,7 +135,7 @@ void attachRest(Work& run) {
         for (std::size_t k = 0; R_r_g && k < run.body.T_r_o.size(); ++k) {
             if (!run.body.T_r_o[k] && run.gravityFrame.R_g_o[k]) {
                 run.body.T_r_o[k] = triangulatePatch(run.sightings, k, *R_r_g * *run.gravityFrame.R_g_o[k], run.body,
-                                                     run.measurements.camera);
+                                                     run.measurements->camera);
                 changed = changed || run.body.T_r_o[k].has_value();
             }
         }
@@ -213,15 +212,15 @@ BodyState InitialEstimate::state() const {
 }
 
 tl::expected<InitialEstimate, CalibrationError> estimateInitially(const Measurements& measurements,
-                                                                  const GravityTable& gravity,
-                                                                  const std::vector<std::optional<double>>& gaps,
+                                                                  const GravityTable& gravity, const LinkHistory& links,
                                                                   const InitialEstimateOptions& options,
                                                                   const RunContext& context) {
     if (!options.validate())
         throw std::logic_error("InitialEstimateOptions out of range");
     const Skin& skin = measurements.skin;
-    Work run{{}, measurements, options, context, {}, {}};
-    run.layout = layOutSkin(measurements, gravity, options.layout, gaps);
+    Work run{{}, options, context, {}, {}};
+    run.measurements = &measurements;
+    run.layout = layOutSkin(measurements, gravity, options.layout, links);
     run.input.skin = &skin;
     run.input.camera = &measurements.camera;
     run.input.gravity = &gravity;

@@ -33,6 +33,7 @@ struct InitialEstimateOptions {
 
 /// Where everything lies before the whole body is adjusted, and what is still open.
 struct InitialEstimate {
+    const Measurements* measurements = nullptr;
     SkinLayout layout;
     AdjustmentInput input;
     PatchShapesResult shapes;
@@ -52,10 +53,9 @@ struct InitialEstimate {
 ///   4. views and patches that the tree could not reach are attached through the whole body: views by all placed LEDs
 ///      together, patches with few LEDs by triangulation with the rotation that gravity gives them
 /// @param gravity  of the same measurements; the result refers to both, they must outlive it.
-/// @param gaps     per link, how far apart its ports came out in an earlier solution; empty before the first.
 /// Fails with Cancelled. Throws std::logic_error where the options are out of range.
 [[nodiscard]] tl::expected<InitialEstimate, CalibrationError> estimateInitially(
-    const Measurements& measurements, const GravityTable& gravity, const std::vector<std::optional<double>>& gaps,
+    const Measurements& measurements, const GravityTable& gravity, const LinkHistory& links,
     const InitialEstimateOptions& options = {}, const RunContext& context = {});
 
 }  // namespace skincal

@@ -3,101 +3,103 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
-#include "core/estimation/body_assembly.h"
+#include "core/estimation/cable_trials.h"
+#include "core/estimation/noise_findings.h"
 
 namespace skincal {
 namespace {
 
-/// The detections that lie where the state has them, and in `estimate` why the others do not count.
-AdjustmentInput withoutOutliers(const AdjustmentInput& input, const BodyState& state, const AdjustmentOptions& weights,
-                                double rejectionSigmas, BodyEstimate& estimate) {
-    AdjustmentInput kept = input;
-    kept.pixels.clear();
-    for (std::size_t i = 0; i < input.pixels.size(); ++i) {
-        const PixelObservation& o = input.pixels[i];
-        const auto r = pixelResidual(input, state, o);
-        if (!r)
-            continue;
-        const double sigma = weights.pixelSigmaFactor * std::max(o.sigma_px, weights.pixelSigmaFloor_px);
-        estimate.rejected[i] = r->norm() > rejectionSigmas * sigma;
-        estimate.rejectedReason[i] =
-            estimate.rejected[i]
-                ? fmt::format("{:.1f} px from where the body has it, {:.0f} sigma", r->norm(), r->norm() / sigma)
-                : std::string();
-        if (!estimate.rejected[i])
-            kept.pixels.push_back(o);
-    }
-    return kept;
+void noteWeights(BodySolution& solution) {
+    auto& condition = solution.estimate.condition;
+    condition["pixel noise factor"] = solution.weights.pixelSigmaFactor;
+    condition["accelerometer sigma"] = solution.weights.accelerometerSigma;
+    condition["link sigma"] = solution.weights.linkSigma;
+    condition["bias sigma"] = solution.weights.biasSigma;
+    condition["scale sigma"] = solution.weights.scaleSigma;
 }
 
-/// True where the weights changed no more.
-bool reweight(const NoiseFactors& factors, double tolerance, AdjustmentOptions& weights) {
-    weights.pixelSigmaFactor *= factors.pixel;
-    weights.accelerometerSigma *= factors.accelerometer;
-    weights.accelerometerSigmaFactor *= factors.accelerometer;
-    weights.linkSigma *= factors.link;
-    weights.biasSigma *= factors.bias;
-    weights.scaleSigma *= factors.scale;
-    const auto stands = [&](double factor) { return std::abs(factor - 1) < tolerance; };
-    return stands(factors.pixel) && stands(factors.accelerometer) && stands(factors.link) && stands(factors.bias) &&
-           stands(factors.scale);
+/// The factor takes the place of the floor: detections may be better than any floor.
+void startWeights(BodySolution& solution, const JointMethodOptions& options) {
+    constexpr double kFloor_px = 1e-3;
+    AdjustmentOptions& weights = solution.weights;
+    weights.pixelSigmaFactor *= std::max(1.0, weights.pixelSigmaFloor_px / 0.05);
+    weights.pixelSigmaFloor_px = kFloor_px;
+    weights.pixelLoss = 0;
+    weights.gravityLoss = weights.linkLoss = options.refinement.losses;
+}
+
+/// One solution with the links as they are known, suspects taken out.
+tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measurements, const GravityTable& gravity,
+                                                       LinkHistory& links, const JointMethodOptions& options,
+                                                       const RunContext& context) {
+    auto solution = solveSturdily(measurements, gravity, links, options.start, context);
+    if (!solution)
+        return solution;
+    solution->estimate.method = "joint";
+    if (!solution->anyViewPlaced())
+        return solution;
+    startWeights(*solution, options);
+    for (int round = 0;; ++round) {
+        auto review = refineJointly(*solution, options.refinement, context);
+        if (!review)
+            return tl::unexpected(review.error());
+        if (!*review)
+            break;
+        solution->estimate.covariances = (*review)->covariances;
+        if (round == options.maxTakeOuts)
+            break;
+        if (!takeOutSuspects(*solution, usedMeasurements(*solution), **review, links, options.suspects))
+            break;
+    }
+    noteWeights(*solution);
+    return solution;
 }
 
 }  // namespace
 
 bool JointMethodOptions::validate() const {
-    return start.validate() && review.validate() && rejectionSigmas > 1 && maxReweightings > 0 && weightTolerance > 0 &&
-           losses > 0;
+    return start.validate() && refinement.validate() && suspects.validate() && maxTakeOuts >= 0 && maxTrials >= 0;
+}
+
+tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& measurements, const GravityTable& gravity,
+                                                          const JointMethodOptions& options,
+                                                          const RunContext& context) {
+    if (!options.validate())
+        throw std::logic_error("JointMethodOptions out of range");
+    LinkHistory links;
+    auto best = solveOnce(measurements, gravity, links, options, context);
+    // Links that turned out to be cables: again without them, their patches fall apart.
+    constexpr int kMostRounds = 3;
+    std::vector<std::string> known;
+    for (int round = 0; best && links.refuted != known && round < kMostRounds; ++round) {
+        known = links.refuted;
+        best = solveOnce(measurements, gravity, links, options, context);
+    }
+    if (!best)
+        return best;
+    for (const LinkHistory& trial : cableTrials(*best, links, options.maxTrials)) {
+        LinkHistory own = trial;
+        auto next = solveOnce(measurements, gravity, own, options, context);
+        if (!next && next.error().code == ErrorCode::Cancelled)
+            return next;
+        if (next && explainsMore(*next, *best)) {
+            best = std::move(next);
+            break;
+        }
+    }
+    noteNoiseFindings(*best);
+    return best;
 }
 
 tl::expected<BodyModel, CalibrationError> calibrateJoint(const Measurements& measurements,
                                                          const JointMethodOptions& options, const RunContext& context) {
-    if (!options.validate())
-        throw std::logic_error("JointMethodOptions out of range");
-    const Refinement refine = [&](const AdjustmentInput& input, BodyState state, const Gauge& gauge,
-                                  const AdjustmentOptions& found, BodyEstimate& estimate,
-                                  const RunContext& part) -> tl::expected<BodyState, CalibrationError> {
-        AdjustmentOptions weights = found;
-        // The factor takes the place of the floor: detections may be better than any floor.
-        constexpr double kFloor_px = 1e-3;
-        weights.pixelSigmaFactor *= std::max(1.0, found.pixelSigmaFloor_px / 0.05);
-        weights.pixelSigmaFloor_px = kFloor_px;
-        weights.pixelLoss = 0;
-        weights.gravityLoss = weights.linkLoss = options.losses;
-        estimate.method = "joint";
-        for (int i = 0; i < options.maxReweightings; ++i) {
-            part.report("weighing the measurements", static_cast<double>(i) / options.maxReweightings);
-            const AdjustmentInput kept = withoutOutliers(input, state, weights, options.rejectionSigmas, estimate);
-            auto result = adjustBody(kept, state, gauge, weights, part);
-            if (!result)
-                return tl::unexpected(result.error());
-            state = std::move(result->state);
-            const auto factors = reviewSolution(kept, state, gauge, weights, options.review);
-            if (!factors)
-                return state;
-            if (reweight(factors->noise, options.weightTolerance, weights))
-                break;
-        }
-        const AdjustmentInput kept = withoutOutliers(input, state, weights, options.rejectionSigmas, estimate);
-        auto result = adjustBody(kept, state, gauge, weights, part);
-        if (!result)
-            return tl::unexpected(result.error());
-        if (auto last = reviewSolution(kept, result->state, gauge, weights, options.review))
-            estimate.covariances = std::move(last->covariances);
-        estimate.condition["pixel noise factor"] = weights.pixelSigmaFactor;
-        estimate.condition["accelerometer sigma"] = weights.accelerometerSigma;
-        estimate.condition["link sigma"] = weights.linkSigma;
-        estimate.condition["bias sigma"] = weights.biasSigma;
-        estimate.condition["scale sigma"] = weights.scaleSigma;
-        return std::move(result->state);
-    };
-    auto body = calibrateSturdy(measurements, options.start, context, refine);
-    if (body)
-        body->generator.method = "joint";
-    return body;
+    const GravityTable gravity(measurements.skin, measurements.gravity);
+    auto solution = solveJointly(measurements, gravity, options, context);
+    if (!solution)
+        return tl::unexpected(solution.error());
+    return describeSolution(std::move(*solution), options.start.initial.pose);
 }
 
 }  // namespace skincal

@@ -2,30 +2,34 @@
 
 #include <tl/expected.hpp>
 
-#include "core/adjustment/solution_review.h"
+#include "core/estimation/joint_refinement.h"
 #include "core/estimation/sturdy_method.h"
+#include "core/estimation/suspects.h"
 
 namespace skincal {
 
 struct JointMethodOptions {
     SturdyMethodOptions start;
-    ReviewOptions review;
-    /// Detections farther from the result than this many of their estimated standard deviations are rejected: by chance
-    /// it happens to one of 250,000.
-    double rejectionSigmas = 5.0;
-    int maxReweightings = 10;
-    double weightTolerance = 0.01;  ///< relative change of the standard deviations at which they stand
-    double losses = 6;              ///< where gravity and links stop to count in full, in standard deviations
+    RefinementOptions refinement;
+    SuspectOptions suspects;
+    int maxTakeOuts = 6;  ///< rounds in which suspects are taken out
+    int maxTrials = 4;    ///< links that are tried as cables where a patch does not fit its pictures
 
     [[nodiscard]] bool validate() const;
 };
 
-/// The joint estimate: started by the sturdy method, then maximum a posteriori over module and view poses, gravity
-/// directions, biases and scales at once, with the weight of each kind of measurement estimated from the residuals and
-/// every detection judged anew by what it then deserves. Gives each module its covariance relative to the first placed
-/// view, which is the body frame.
+/// The joint estimate from the data alone: started by the sturdy method, refined over everything at once with weights
+/// from the residuals; what everything else contradicts is taken out and named; and where a whole part of a patch does
+/// not fit its pictures, the links that may be cables after all are tried as such and kept so where that costs less.
+/// Each module has its covariance relative to the first placed view, which is the body frame.
 /// Fails with Cancelled or NotConverged. Where the data do not fix all unknowns the sturdy method's weights stand and
 /// there are no covariances.
+[[nodiscard]] tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& measurements,
+                                                                        const GravityTable& gravity,
+                                                                        const JointMethodOptions& options = {},
+                                                                        const RunContext& context = {});
+
+/// solveJointly as a body model.
 [[nodiscard]] tl::expected<BodyModel, CalibrationError> calibrateJoint(const Measurements& measurements,
                                                                        const JointMethodOptions& options = {},
                                                                        const RunContext& context = {});

@@ -130,7 +130,7 @@ std::vector<PortPair> adjacentPorts(const Skin& skin, const SkinLayout& layout) 
         const GraphLink& link = layout.graph.links()[l];
         if (layout.verdicts[l].kind != LinkKind::Adjacent)
             continue;
-        pairs.push_back({link.a, link.b, skin.port(link.a, link.a_port), skin.port(link.b, link.b_port)});
+        pairs.push_back({link.a, link.b, skin.port(link.a, link.a_port), skin.port(link.b, link.b_port), l});
     }
     return pairs;
 }

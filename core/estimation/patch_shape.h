@@ -48,7 +48,7 @@ struct PatchShapesResult {
                                                                                     AdjustmentOptions options = {},
                                                                                     const RunContext& context = {});
 
-/// The port pairs of all links that join neighbours.
+/// The port pairs of all links that join neighbours, with their position in the graph.
 [[nodiscard]] std::vector<PortPair> adjacentPorts(const Skin& skin, const SkinLayout& layout);
 
 }  // namespace skincal

@@ -150,14 +150,16 @@ bool LayoutOptions::validate() const {
 }
 
 SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity, const LayoutOptions& options,
-                      const std::vector<std::optional<double>>& gaps) {
+                      const LinkHistory& history) {
     if (!options.validate())
         throw std::logic_error("LayoutOptions out of range");
     SkinLayout layout{buildSkinGraph(measurements.skin), {}, {}, {}};
     const auto& links = layout.graph.links();
     CableEvidence evidence(links.size());
-    if (!gaps.empty())
-        evidence.gap = gaps;
+    if (!history.gaps.empty())
+        evidence.gap = history.gaps;
+    if (!history.refuted.empty())
+        evidence.refuted = history.refuted;
     for (std::size_t l = 0; l < links.size(); ++l) {
         if (const auto rotation = relativeRotation(gravity, links[l].a, links[l].b, options.rotation)) {
             evidence.R_a_b[l] = rotation->R_c_n;

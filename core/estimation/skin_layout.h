@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/adjustment/gravity_table.h"
@@ -29,6 +30,15 @@ struct LayoutOptions {
     [[nodiscard]] bool validate() const;
 };
 
+/// What earlier solutions told of links, per link of the graph; empty before the first.
+struct LinkHistory {
+    std::vector<std::optional<double>>
+        gaps;                          ///< how far apart its ports came out where it was taken for a neighbour, m
+    std::vector<std::string> refuted;  ///< how everything else contradicts it; empty where nothing does
+
+    [[nodiscard]] bool operator==(const LinkHistory&) const = default;
+};
+
 /// How far apart in the pictures the two LEDs of a link are: times the distance that they would have as neighbours, at
 /// the scale (px/m, foreshortened alike) of the links round about. The lower quartile over views: a false detection at
 /// either end sets neighbours apart, hardly ever puts the ends of a cable together. Nothing where too few views show
@@ -41,10 +51,7 @@ struct LayoutOptions {
                                                                  double tooLong, int minViews);
 
 /// Graph, cables by all evidence there is, patches with their origins (paper, Algorithm 1).
-/// @param gaps  per link of the graph, how far apart its ports came out in an earlier solution (m); empty before the
-/// first.
 [[nodiscard]] SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity,
-                                    const LayoutOptions& options = {},
-                                    const std::vector<std::optional<double>>& gaps = {});
+                                    const LayoutOptions& options = {}, const LinkHistory& history = {});
 
 }  // namespace skincal

@@ -58,6 +58,12 @@ LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const CableEvide
             *rotationResidual, options.maxRotationResidual);
         return verdict;
     }
+    if (!evidence.refuted[l].empty()) {
+        verdict.kind = LinkKind::Cable;
+        verdict.reason = LinkReason::Refuted;
+        verdict.explanation = evidence.refuted[l];
+        return verdict;
+    }
     if (gap && *gap > options.maxGap) {
         verdict.kind = LinkKind::Cable;
         verdict.reason = LinkReason::Gap;
@@ -155,7 +161,8 @@ std::vector<LinkVerdict> detectCables(const Skin& skin, const SkinGraph& graph, 
     if (!options.validate())
         throw std::logic_error("CableOptions out of range");
     if (evidence.R_a_b.size() != links.size() || evidence.rotationResidual.size() != links.size() ||
-        evidence.separation.size() != links.size() || evidence.gap.size() != links.size())
+        evidence.separation.size() != links.size() || evidence.gap.size() != links.size() ||
+        evidence.refuted.size() != links.size())
         throw std::logic_error("detectCables: evidence and graph differ in size");
     std::vector<LinkVerdict> verdicts;
     verdicts.reserve(links.size());

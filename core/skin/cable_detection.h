@@ -21,6 +21,7 @@ enum class LinkReason {
     Movement,       ///< the two boards turned against each other between the poses: a joint is between them
     Separation,     ///< the LEDs are far apart in the pictures
     Gap,            ///< the two ports are far apart in a solution that took them for one point
+    Refuted,        ///< everything else that was measured contradicts it
 };
 
 struct LinkVerdict {
@@ -35,13 +36,15 @@ struct LinkVerdict {
 struct CableEvidence {
     CableEvidence() = default;
     /// Nothing measured about any of so many links.
-    explicit CableEvidence(std::size_t links) : R_a_b(links), rotationResidual(links), separation(links), gap(links) {}
+    explicit CableEvidence(std::size_t links)
+        : R_a_b(links), rotationResidual(links), separation(links), gap(links), refuted(links) {}
 
     std::vector<std::optional<Matrix3d>> R_a_b;  ///< relative rotation from gravity
     /// How much the readings of the two ends differ all the same, rms over the poses, m/s^2.
     std::vector<std::optional<double>> rotationResidual;
     std::vector<std::optional<double>> separation;  ///< distance in the pictures, times that of neighbours
     std::vector<std::optional<double>> gap;         ///< between the two ports in an earlier solution, m
+    std::vector<std::string> refuted;               ///< how a solution without it contradicts it; empty where none does
 };
 
 struct CableOptions {

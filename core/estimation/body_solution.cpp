@@ -1,0 +1,191 @@
+#include "core/estimation/body_solution.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/estimation/missing_data.h"
+#include "core/estimation/module_support.h"
+
+namespace skincal {
+namespace {
+
+/// Modules that started flat for want of readings keep a pose only where the rest of the data came to hold it.
+void dropWhatNothingHolds(BodySolution& solution, const Measurements& measurements, BodyState& state) {
+    const AdjustmentInput used = usedMeasurements(solution);
+    std::vector<bool> measured = solution.shapes.assumedFlat;
+    measured.flip();
+    const std::vector<bool> held = heldModules(used, state, std::move(measured));
+    std::vector<std::size_t> dropped;
+    for (std::size_t u = 0; u < held.size(); ++u) {
+        if (!held[u] && state.T_r_u[u]) {
+            state.T_r_u[u].reset();
+            dropped.push_back(u);
+        }
+    }
+    for (std::size_t k = 0; k < solution.layout.patches.size(); ++k) {
+        for (std::size_t i = 0; i < solution.layout.patches[k].modules.size(); ++i) {
+            if (!held[solution.layout.patches[k].modules[i]] &&
+                solution.shapes.assumedFlat[solution.layout.patches[k].modules[i]])
+                solution.shapes.shapes[k].T_o_u[i].reset();
+        }
+    }
+    if (!dropped.empty())
+        solution.estimate.missing.push_back(whyNotHeld(measurements.skin, dropped));
+}
+
+void reportMissing(BodySolution& solution, const Measurements& measurements, const BodyState& state,
+                   const PatchPoseOptions& pose) {
+    BodyEstimate& estimate = solution.estimate;
+    const Skin& skin = measurements.skin;
+    const bool anyPlaced =
+        std::any_of(state.T_r_u.begin(), state.T_r_u.end(), [](const auto& T) { return T.has_value(); });
+    for (std::size_t k = 0; k < solution.layout.patches.size(); ++k) {
+        const Patch& patch = solution.layout.patches[k];
+        if (solution.body.T_r_o[k]) {
+            estimate.patchStatus[k] = "placed";
+            continue;
+        }
+        estimate.patchStatus[k] = solution.evidence[k].mostDetected > 0 && solution.evidence[k].mostUsable == 0
+                                      ? "gravity does not tell its shape"
+                                      : "not seen with a placed patch";
+        estimate.missing.push_back(whyNotPlaced(skin, patch, solution.evidence[k], pose.minInliers, anyPlaced));
+    }
+    for (std::size_t v = 0; v < solution.body.T_r_v.size(); ++v) {
+        estimate.viewStatus[v] =
+            solution.body.T_r_v[v] ? "placed" : "shows no placed patch well enough, or could be in two places";
+        if (!solution.body.T_r_v[v] && anyPlaced)
+            estimate.warnings.push_back(
+                fmt::format("view {} is not used: it {}", measurements.views[v].name, estimate.viewStatus[v]));
+    }
+    if (estimate.undecidedViews > 0) {
+        estimate.trustAtMost = Trust::Usable;
+        estimate.warnings.push_back(
+            fmt::format("{} views show a flat patch alone and could be in two places: the likelier was taken",
+                        estimate.undecidedViews));
+    }
+    const bool anyGravity = solution.input.gravity->poseCount() > 0;
+    for (std::size_t k = 0; anyGravity && k < solution.layout.patches.size(); ++k) {
+        if (!solution.gravityFrame.R_g_o[k] && solution.body.T_r_o[k] &&
+            solution.layout.patches[k].modules.size() > 1) {
+            estimate.trustAtMost = Trust::Usable;
+            estimate.warnings.push_back(
+                fmt::format("patch {}: gravity disagrees with the other patches or is too alike in all poses; its "
+                            "rotation rests on the camera alone",
+                            solution.layout.patches[k].id.value));
+        }
+    }
+    for (const Finding& finding : estimate.findings)
+        estimate.warnings.push_back(finding.text);
+    for (const NoisyAccelerometer& noisy : solution.shapes.noisy) {
+        const ModuleId id = skin.modules[noisy.module].id;
+        const bool named = std::any_of(estimate.findings.begin(), estimate.findings.end(), [&](const Finding& f) {
+            return f.kind == Finding::Kind::NoisyAccelerometer && f.modules.front() == id;
+        });
+        if (!named)
+            estimate.warnings.push_back(
+                fmt::format("module {}: its accelerometer is off by {:.2f} m/s² rms, the others by {:.2f}", id.value,
+                            noisy.sigma, solution.shapes.accelerometerSigma));
+    }
+}
+
+/// The views whose pictures have a say in where each patch lies.
+void listPatchViews(BodySolution& solution, const BodyState& state) {
+    std::vector<std::set<std::size_t>> views(solution.layout.patches.size());
+    for (std::size_t i = 0; i < solution.input.pixels.size(); ++i) {
+        const PixelObservation& o = solution.input.pixels[i];
+        if (!solution.estimate.rejected[i] && state.T_r_v[o.view] && state.T_r_u[o.module])
+            views[solution.layout.patchOf[o.module]].insert(o.view);
+    }
+    for (const auto& of : views)
+        solution.estimate.patchViews.emplace_back(of.begin(), of.end());
+}
+
+/// A patch's frame is its origin's: it has none where nothing holds the origin.
+void placePatchFrames(BodySolution& solution, const BodyState& state) {
+    for (std::size_t k = 0; k < solution.layout.patches.size(); ++k) {
+        const Patch& patch = solution.layout.patches[k];
+        solution.estimate.T_r_o[k] = state.T_r_u[patch.origin];
+        if (!solution.estimate.T_r_o[k])
+            continue;
+        for (std::size_t i = 0; i < patch.modules.size(); ++i) {
+            if (state.T_r_u[patch.modules[i]])
+                solution.shapes.shapes[k].T_o_u[i] =
+                    solution.estimate.T_r_o[k]->inverse() * *state.T_r_u[patch.modules[i]];
+        }
+    }
+}
+
+}  // namespace
+
+bool BodySolution::anyViewPlaced() const {
+    return std::any_of(solved.T_r_v.begin(), solved.T_r_v.end(), [](const auto& T) { return T.has_value(); });
+}
+
+void rejectFarDetections(BodySolution& solution, double sigmas) {
+    BodyEstimate& estimate = solution.estimate;
+    for (std::size_t i = 0; i < solution.input.pixels.size(); ++i) {
+        const PixelObservation& o = solution.input.pixels[i];
+        estimate.rejected[i] = !estimate.setAside[i].empty();
+        estimate.rejectedReason[i] = estimate.setAside[i];
+        const auto r = pixelResidual(solution.input, solution.solved, o);
+        if (!r || estimate.rejected[i])
+            continue;
+        const double sigma = solution.input.sigmaOf(o, solution.weights);
+        if (r->norm() > sigmas * sigma) {
+            estimate.rejected[i] = true;
+            estimate.rejectedReason[i] =
+                fmt::format("{:.1f} px from where the body has it, {:.0f} sigma", r->norm(), r->norm() / sigma);
+        }
+    }
+}
+
+tl::expected<int, CalibrationError> adjustSolution(BodySolution& solution, const AdjustmentInput& input,
+                                                   const RunContext& context) {
+    auto result = adjustBody(input, solution.solved, solution.gauge, solution.weights, context);
+    if (!result)
+        return tl::unexpected(result.error());
+    solution.solved = std::move(result->state);
+    return result->summary.iterations;
+}
+
+AdjustmentInput usedMeasurements(const BodySolution& solution) {
+    AdjustmentInput used = solution.input;
+    used.pixels.clear();
+    for (std::size_t i = 0; i < solution.input.pixels.size(); ++i) {
+        if (!solution.estimate.rejected[i])
+            used.pixels.push_back(solution.input.pixels[i]);
+    }
+    return used;
+}
+
+std::vector<std::optional<double>> linkGaps(const BodySolution& solution, std::vector<std::optional<double>> before) {
+    const auto& links = solution.layout.graph.links();
+    const Skin& skin = *solution.input.skin;
+    before.resize(links.size());
+    for (std::size_t l = 0; l < links.size(); ++l) {
+        const GraphLink& link = links[l];
+        const auto& T_r_a = solution.solved.T_r_u[link.a];
+        const auto& T_r_b = solution.solved.T_r_u[link.b];
+        if (T_r_a && T_r_b)
+            before[l] = (*T_r_a * skin.port(link.a, link.a_port) - *T_r_b * skin.port(link.b, link.b_port)).norm();
+    }
+    return before;
+}
+
+BodyModel describeSolution(BodySolution solution, const PatchPoseOptions& pose) {
+    const Measurements& measurements = *solution.measurements;
+    BodyState& state = solution.solved;
+    dropWhatNothingHolds(solution, measurements, state);
+    reportMissing(solution, measurements, state, pose);
+    listPatchViews(solution, state);
+    placePatchFrames(solution, state);
+    solution.estimate.shapes = solution.shapes.shapes;
+    solution.estimate.T_r_u = state.T_r_u;
+    solution.estimate.T_r_v = state.T_r_v;
+    solution.estimate.accelerometers = state.accelerometers;
+    return assembleBody(measurements, *solution.input.gravity, solution.layout, solution.input, solution.estimate);
+}
+
+}  // namespace skincal

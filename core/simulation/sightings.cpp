@@ -42,7 +42,7 @@ Eigen::Vector4d occluderOf(const World& world, std::size_t view) {
     // Round the place where some module's LED would be, so that it hides something.
     Random random(world.seed + view, "occluder");
     const std::size_t module = random.index(world.T_r_u.size());
-    const Vector3d led_v = world.T_r_v[view].inverse() * (world.T_r_u[module] * world.skin.templateOf(module).led);
+    const Vector3d led_v = world.T_r_v[view].inverse() * (world.T_r_u[module] * world.trueTemplate(module).led);
     const auto pixel = world.scenario.camera.project(led_v);
     const Vector2d middle = pixel.value_or(Vector2d(world.scenario.camera.cx, world.scenario.camera.cy));
     const double size = 0.075 * world.scenario.camera.fx / std::max(0.1, led_v.z());
@@ -52,7 +52,7 @@ Eigen::Vector4d occluderOf(const World& world, std::size_t view) {
 std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module,
                                      const Visibility& visibility) {
     const Isometry3d& T_r_u = world.T_r_u[module];
-    const Vector3d led_r = T_r_u * world.skin.templateOf(module).led;
+    const Vector3d led_r = T_r_u * world.trueTemplate(module).led;
     const Vector3d camera_r = world.T_r_v[view].translation();
     const Vector3d ray = (camera_r - led_r).normalized();
     if (T_r_u.linear().col(2).dot(ray) < std::cos(visibility.maxAngle))

@@ -30,15 +30,21 @@ struct Card {
 struct World {
     Scenario scenario;
     std::uint64_t seed = 0;
-    Skin skin;                        ///< as the network reports it: no word on what is a cable
-    std::vector<Isometry3d> T_r_u;    ///< per module
-    std::vector<int> patchOf;         ///< per module
-    std::vector<bool> isCable;        ///< per link
-    std::vector<Vector3d> gravity_r;  ///< per pose: what an ideal accelerometer reads, body frame, m/s^2
-    std::vector<Isometry3d> T_r_v;    ///< per view
+    Skin skin;                          ///< as the network reports it: no word on what is a cable
+    std::vector<std::size_t> trueType;  ///< per module, index into Scenario::templates, whatever the network reports
+    std::vector<Isometry3d> T_r_u;      ///< per module
+    std::vector<int> patchOf;           ///< per module
+    std::vector<bool> isCable;          ///< per link
+    std::vector<Vector3d> gravity_r;    ///< per pose: what an ideal accelerometer reads, body frame, m/s^2
+    std::vector<Isometry3d> T_r_v;      ///< per view
     std::vector<Tube> tubes;
     std::vector<Card> cards;
     std::vector<std::size_t> covered;  ///< modules whose LED lies under a card, in increasing order
+
+    /// What a module really is; skin.templateOf says what it is reported to be.
+    [[nodiscard]] const ModuleTemplate& trueTemplate(std::size_t module) const {
+        return scenario.templates[trueType[module]];
+    }
 };
 
 /// Lays a business card on the middle of the first patch, turned and shifted so that it covers the LEDs of exactly

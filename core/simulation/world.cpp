@@ -207,6 +207,7 @@ World buildWorld(const Scenario& scenario, std::uint64_t seed) {
         layCard(world, scenario.covered);
     poseBody(world);
     placeCameras(world);
+    addFaults(world);
     return world;
 }
 

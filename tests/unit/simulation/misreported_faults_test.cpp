@@ -138,6 +138,17 @@ TEST(Faults, SpareWhatLiesUnderACard) {
     EXPECT_THROW((void)faulty(options, 1, *findScenario("shoe-sole")), std::logic_error);
 }
 
+TEST(Faults, AreInTwoOfTheScenarios) {
+    const World world = buildWorld(*findScenario("faults"), 1);
+    EXPECT_FALSE(world.faults.movedModules.empty());
+    EXPECT_FALSE(world.faults.shakenPoses.empty());
+    EXPECT_FALSE(world.faults.misportedLinks.empty());
+    EXPECT_FALSE(world.faults.bumpedViews.empty());
+    EXPECT_FALSE(world.faults.wrongTemplates.empty());
+    EXPECT_TRUE(world.faults.movedPatches.empty());
+    EXPECT_EQ(buildWorld(*findScenario("moved-joint"), 1).faults.movedPatches.size(), 1U);
+}
+
 TEST(Faults, MoreThanThereIsIsRefused) {
     const auto refused = [](void (*ask)(FaultOptions&), const Scenario& scenario) {
         FaultOptions options;

@@ -23,13 +23,13 @@ void layCard(World& world, std::size_t count) {
     double highest = 0;
     for (std::size_t u = 0; u < world.T_r_u.size() && world.patchOf[u] == world.patchOf.front(); ++u) {
         const Isometry3d T = T_u0_r * world.T_r_u[u];
-        const Vector3d led = T * world.skin.templateOf(u).led;
+        const Vector3d led = T * world.trueTemplate(u).led;
         if (led.norm() > kReach)
             continue;
         leds.emplace_back(u, led);
         if (led.norm() > 0.5 * kReach)
             continue;
-        for (const Vector2d& corner : world.skin.templateOf(u).outline)
+        for (const Vector2d& corner : world.trueTemplate(u).outline)
             highest = std::max(highest, (T * Vector3d(corner.x(), corner.y(), 0)).z());
     }
     Card card;

@@ -74,7 +74,7 @@ std::vector<FrameRenderer::Spot> FrameRenderer::spotsAt(const Isometry3d& T_r_v)
     for (std::size_t u = 0; u < spots.size(); ++u) {
         if (!visiblePixel(world_, view_, u, any))
             continue;
-        const Vector3d led_r = world_.T_r_u[u] * world_.skin.templateOf(u).led;
+        const Vector3d led_r = world_.T_r_u[u] * world_.trueTemplate(u).led;
         const auto pixel = world_.scenario.camera.project(T_r_v.inverse() * led_r);
         const Vector3d ray = T_r_v.translation() - led_r;
         if (!pixel)

@@ -163,6 +163,24 @@ std::vector<Scenario> makeScenarios() {
     all.push_back(s);
 
     s = freeForm();
+    s.name = "faults";
+    s.description = "the free form with cables and a fault of each kind: things moved, shaken, knocked and misreported";
+    s.templates.push_back(rectangleTemplate());
+    s.cables = true;
+    s.views.count = 12;
+    s.views.outliers = 0.05;
+    s.faults.movedModules = 2;
+    s.faults.shakenPoses = 2;
+    s.faults.misportedLinks = 2;
+    s.faults.bumpedViews = 1;
+    s.faults.wrongTemplates = 1;
+    all.push_back(s);
+
+    s = arm("moved-joint", "the arm, a patch of which turned by 20 degrees between the gravity poses and the scan", 20);
+    s.faults.movedPatches = 1;
+    all.push_back(s);
+
+    s = freeForm();
     s.name = "misaligned";
     s.description = "the free form, every accelerometer soldered on askew by half a degree about each axis";
     s.sensors.misalignment = 0.5 * kDegree;

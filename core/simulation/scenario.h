@@ -82,6 +82,24 @@ struct DisturbanceOptions {
     double bump_px = 0;     ///< the camera is knocked half-way through each second view
 };
 
+/// What goes wrong in a way that a calibration has to find and name: how many of each, and by how much. All off by
+/// default. World::faults says who the culprits are.
+struct FaultOptions {
+    std::size_t movedModules = 0;     ///< modules that moved between the gravity poses and the scan
+    double moveShift = 4e-3;          ///< m, along the skin or off it
+    double moveTilt = 6 * kDegree;    ///< rad, about a random axis
+    std::size_t shakenPoses = 0;      ///< gravity poses during which the body shook
+    double shake = 0.6;               ///< m/s^2, rms length of the acceleration that all modules of the pose share
+    double tremble = 0.4;             ///< m/s^2 rms per axis, of each module's own part
+    std::size_t misportedLinks = 0;   ///< neighbour links with a wrong port at one end, one that is free otherwise
+    std::size_t bumpedViews = 0;      ///< views whose camera is knocked half-way; ScanKind::Detections only
+    double bumpShift = 8e-3;          ///< m, in a random direction
+    double bumpTurn = 1 * kDegree;    ///< rad, about a random axis
+    std::size_t wrongTemplates = 0;   ///< modules reported as another of the templates, one that has the linked ports
+    std::size_t movedPatches = 0;     ///< patches, never the first, that turned between the gravity poses and the scan
+    double patchTurn = 20 * kDegree;  ///< rad, about a random axis through the patch's middle
+};
+
 /// Everything that a simulated world is made from, given a seed.
 struct Scenario {
     std::string name;
@@ -96,6 +114,7 @@ struct Scenario {
     ViewOptions views;
     RenderOptions pictures;
     DisturbanceOptions disturbances;
+    FaultOptions faults;
     CameraModel camera;
 };
 

@@ -304,7 +304,7 @@ cv::Mat paintScene(const World& world, std::size_t view, int margin) {
         addTube(tube, T_v_r, groups);
     addPlate(world, T_v_r, groups);
     for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
-        addModule(T_v_r * world.T_r_u[u], world.skin.templateOf(u), groups);
+        addModule(T_v_r * world.T_r_u[u], world.trueTemplate(u), groups);
     std::stable_sort(groups.begin(), groups.end(), [](const Group& x, const Group& y) { return x.depth > y.depth; });
     for (const Card& card : world.cards)
         groups.push_back(cardGroup(card, T_v_r));

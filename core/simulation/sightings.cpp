@@ -34,30 +34,15 @@ bool crosses(const Card& card, const Vector3d& a, const Vector3d& b) {
     return std::abs(hit.x()) < 0.5 * card.width && std::abs(hit.y()) < 0.5 * card.height;
 }
 
-}  // namespace
-
-Eigen::Vector4d occluderOf(const World& world, std::size_t view) {
-    if (!world.scenario.disturbances.occluder)
-        return Eigen::Vector4d::Zero();
-    // Round the place where some module's LED would be, so that it hides something.
-    Random random(world.seed + view, "occluder");
-    const std::size_t module = random.index(world.T_r_u.size());
-    const Vector3d led_v = world.T_r_v[view].inverse() * (world.T_r_u[module] * world.skin.templateOf(module).led);
-    const auto pixel = world.scenario.camera.project(led_v);
-    const Vector2d middle = pixel.value_or(Vector2d(world.scenario.camera.cx, world.scenario.camera.cy));
-    const double size = 0.075 * world.scenario.camera.fx / std::max(0.1, led_v.z());
-    return {middle.x() - 0.5 * size, middle.y() - 0.35 * size, size, 0.7 * size};
-}
-
-std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module,
-                                     const Visibility& visibility) {
-    const Isometry3d& T_r_u = world.T_r_u[module];
-    const Vector3d led_r = T_r_u * world.skin.templateOf(module).led;
-    const Vector3d camera_r = world.T_r_v[view].translation();
+/// Pixel of a module's LED, module and camera being where they are said to be.
+std::optional<Vector2d> pixelFrom(const World& world, std::size_t view, const Isometry3d& T_r_v, std::size_t module,
+                                  const Isometry3d& T_r_u, const Visibility& visibility) {
+    const Vector3d led_r = T_r_u * world.trueTemplate(module).led;
+    const Vector3d camera_r = T_r_v.translation();
     const Vector3d ray = (camera_r - led_r).normalized();
     if (T_r_u.linear().col(2).dot(ray) < std::cos(visibility.maxAngle))
         return std::nullopt;
-    const auto pixel = world.scenario.camera.project(world.T_r_v[view].inverse() * led_r);
+    const auto pixel = world.scenario.camera.project(T_r_v.inverse() * led_r);
     const CameraModel& camera = world.scenario.camera;
     if (!pixel || pixel->x() < visibility.margin_px || pixel->y() < visibility.margin_px ||
         pixel->x() > camera.width - 1 - visibility.margin_px || pixel->y() > camera.height - 1 - visibility.margin_px)
@@ -79,26 +64,85 @@ std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::
     return pixel;
 }
 
-std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module) {
+/// Where a module would be at the scan if no fault had moved it by itself.
+const Isometry3d& poseAsLaid(const World& world, std::size_t module) {
+    const auto& moved = world.faults.movedModules;
+    const bool isMoved = std::binary_search(moved.begin(), moved.end(), module);
+    return isMoved ? world.faults.T_r_u_before[module] : world.T_r_u[module];
+}
+
+Visibility limitsOf(const World& world) {
     Visibility visibility;
     visibility.maxAngle = world.scenario.views.maxAngle;
-    return visiblePixel(world, view, module, visibility);
+    return visibility;
+}
+
+const BumpedView* bumpOf(const World& world, std::size_t view) {
+    for (const BumpedView& bump : world.faults.bumpedViews) {
+        if (bump.view == view)
+            return &bump;
+    }
+    return nullptr;
+}
+
+Vector2d detect(const Vector2d& pixel, const ViewOptions& options, Random& random) {
+    Vector2d found = pixel + options.pixelNoise * Vector2d(random.normal(), random.normal());
+    if (random.uniform() < options.outliers)
+        found = pixel + Vector2d(random.uniform(-250, 250), random.uniform(-250, 250));
+    return found;
+}
+
+}  // namespace
+
+Eigen::Vector4d occluderOf(const World& world, std::size_t view) {
+    if (!world.scenario.disturbances.occluder)
+        return Eigen::Vector4d::Zero();
+    // Round the place where some module's LED would be, so that it hides something.
+    Random random(world.seed + view, "occluder");
+    const std::size_t module = random.index(world.T_r_u.size());
+    const Vector3d led_v = world.T_r_v[view].inverse() * (poseAsLaid(world, module) * world.trueTemplate(module).led);
+    const auto pixel = world.scenario.camera.project(led_v);
+    const Vector2d middle = pixel.value_or(Vector2d(world.scenario.camera.cx, world.scenario.camera.cy));
+    const double size = 0.075 * world.scenario.camera.fx / std::max(0.1, led_v.z());
+    return {middle.x() - 0.5 * size, middle.y() - 0.35 * size, size, 0.7 * size};
+}
+
+std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module,
+                                     const Visibility& visibility) {
+    return pixelFrom(world, view, world.T_r_v[view], module, world.T_r_u[module], visibility);
+}
+
+std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module) {
+    return visiblePixel(world, view, module, limitsOf(world));
+}
+
+bool scannedAfterBump(const World& world, std::size_t module) {
+    return 2 * module >= world.T_r_u.size();
 }
 
 std::vector<ViewDetections> simulateDetections(const World& world) {
     const ViewOptions& options = world.scenario.views;
+    const Visibility limits = limitsOf(world);
     Random random(world.seed, "detections");
+    Random strays(world.seed, "detections that faults bring about");
     std::vector<ViewDetections> views;
     for (std::size_t v = 0; v < world.T_r_v.size(); ++v) {
         ViewDetections view{viewName(v), {}, {}};
+        const BumpedView* bump = bumpOf(world, v);
         for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
-            const auto pixel = visiblePixel(world, v, u);
-            if (!pixel)
+            const Isometry3d& asLaid = poseAsLaid(world, u);
+            const bool isMoved = &asLaid != &world.T_r_u[u];
+            const bool isBumped = bump != nullptr && scannedAfterBump(world, u);
+            const Isometry3d& T_r_v = isBumped ? bump->T_r_v_after : world.T_r_v[v];
+            const auto pixel = pixelFrom(world, v, T_r_v, u, world.T_r_u[u], limits);
+            // What comes into sight or goes out of it by a fault must not shift the noise of all that follows.
+            bool usual = pixel.has_value();
+            if (isMoved || isBumped)
+                usual = pixelFrom(world, v, world.T_r_v[v], u, asLaid, limits).has_value();
+            if (!pixel && !usual)
                 continue;
-            Vector2d found = *pixel + options.pixelNoise * Vector2d(random.normal(), random.normal());
-            if (random.uniform() < options.outliers)
-                found = *pixel + Vector2d(random.uniform(-250, 250), random.uniform(-250, 250));
-            if (world.scenario.camera.contains(found))
+            const Vector2d found = detect(pixel.value_or(Vector2d::Zero()), options, usual ? random : strays);
+            if (pixel && world.scenario.camera.contains(found))
                 view.found.push_back({world.skin.modules[u].id, found, std::max(1e-3, options.pixelNoise)});
         }
         views.push_back(std::move(view));

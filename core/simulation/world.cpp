@@ -40,6 +40,7 @@ void addPatch(World& world, std::size_t k, Random& random) {
         world.T_r_u.push_back(T);
         world.patchOf.push_back(static_cast<int>(k));
         world.skin.modules.push_back({ModuleId(), plan.type});
+        world.trueType.push_back(plan.type);
     }
     for (const LaidLink& link : layout.links) {
         // Positions for now; ids are given out once all modules are there.
@@ -71,7 +72,7 @@ void addCables(World& world, Random& random) {
         for (std::size_t u = 0; u < world.patchOf.size(); ++u) {
             if (world.patchOf[u] != patch)
                 continue;
-            for (int p = 0; p < static_cast<int>(world.skin.templateOf(u).ports.size()); ++p) {
+            for (int p = 0; p < static_cast<int>(world.trueTemplate(u).ports.size()); ++p) {
                 if (taken.count({static_cast<std::uint32_t>(u), p}) == 0)
                     open.emplace_back(static_cast<std::uint32_t>(u), p);
             }
@@ -206,6 +207,7 @@ World buildWorld(const Scenario& scenario, std::uint64_t seed) {
         layCard(world, scenario.covered);
     poseBody(world);
     placeCameras(world);
+    addFaults(world);
     return world;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/simulation/faults.h"
 #include "core/simulation/scenario.h"
 #include "core/simulation/truth.h"
 #include "core/skin/skin.h"
@@ -30,15 +31,22 @@ struct Card {
 struct World {
     Scenario scenario;
     std::uint64_t seed = 0;
-    Skin skin;                        ///< as the network reports it: no word on what is a cable
-    std::vector<Isometry3d> T_r_u;    ///< per module
-    std::vector<int> patchOf;         ///< per module
-    std::vector<bool> isCable;        ///< per link
-    std::vector<Vector3d> gravity_r;  ///< per pose: what an ideal accelerometer reads, body frame, m/s^2
-    std::vector<Isometry3d> T_r_v;    ///< per view
+    Skin skin;                          ///< as the network reports it: no word on what is a cable, faults included
+    std::vector<std::size_t> trueType;  ///< per module, index into Scenario::templates, whatever the network reports
+    std::vector<Isometry3d> T_r_u;      ///< per module, at the scan
+    std::vector<int> patchOf;           ///< per module
+    std::vector<bool> isCable;          ///< per link
+    std::vector<Vector3d> gravity_r;    ///< per pose: what an ideal accelerometer reads, body frame, m/s^2
+    std::vector<Isometry3d> T_r_v;      ///< per view; of one that is knocked half-way, before the knock
     std::vector<Tube> tubes;
     std::vector<Card> cards;
     std::vector<std::size_t> covered;  ///< modules whose LED lies under a card, in increasing order
+    WorldFaults faults;                ///< who is to blame for what
+
+    /// What a module really is; skin.templateOf says what it is reported to be.
+    [[nodiscard]] const ModuleTemplate& trueTemplate(std::size_t module) const {
+        return scenario.templates[trueType[module]];
+    }
 };
 
 /// Lays a business card on the middle of the first patch, turned and shifted so that it covers the LEDs of exactly
@@ -47,13 +55,15 @@ struct World {
 void layCard(World& world, std::size_t count);
 
 /// Lays out the patches, adds mechanical play, wires cables, poses the body and places cameras so that consecutive
-/// views overlap. The same scenario and seed give the same world.
+/// views overlap; then lets go wrong what the scenario asks for (see addFaults). The same scenario and seed give the
+/// same world. Throws std::logic_error where the scenario has no patch or template, or asks for more than there is.
 [[nodiscard]] World buildWorld(const Scenario& scenario, std::uint64_t seed);
 
 [[nodiscard]] std::string viewName(std::size_t view);
 
 /// Accelerometer readings of all modules in all poses:
 ///   a = S M R_r_u^T g + b + noise,  S scale, M misalignment, b bias
+/// in the poses that modules had then (poseAtGravity), with the accelerations of shaken poses (see ShakenPose).
 [[nodiscard]] std::vector<GravityReading> simulateGravity(const World& world);
 
 struct Visibility {
@@ -71,9 +81,14 @@ struct Visibility {
 /// The part of the picture that the occluder hides in a view, in pixels (x, y, width, height); empty without one.
 [[nodiscard]] Eigen::Vector4d occluderOf(const World& world, std::size_t view);
 
-/// LED positions with noise, and false ones within 250 px where the scenario has outliers.
+/// True of the modules that a scan shows in its later half, when a camera that is knocked half-way has moved.
+[[nodiscard]] bool scannedAfterBump(const World& world, std::size_t module);
+
+/// LED positions with noise, and false ones within 250 px where the scenario has outliers; from two poses of the camera
+/// in bumped views. A fault changes the detections of its culprits alone, to the last bit.
 [[nodiscard]] std::vector<ViewDetections> simulateDetections(const World& world);
 
+/// Poses at the scan, and pixels from World::T_r_v: in bumped views, as if nobody had knocked.
 [[nodiscard]] Truth truthOf(const World& world);
 
 /// The frames of one view's scan, in order, with the lit sets: see ScanKind. Coded scans begin with all off and all on,

@@ -30,8 +30,15 @@ TEST_P(Scenarios, AreWellFormedWorlds) {
             const std::size_t b = index.at(link.b);
             EXPECT_EQ(world.isCable[l], world.patchOf[a] != world.patchOf[b]);
             EXPECT_FALSE(link.decided) << "the network does not know what is a cable";
-            const double gap = (world.T_r_u[a] * world.skin.templateOf(a).ports[static_cast<std::size_t>(link.a_port)] -
-                                world.T_r_u[b] * world.skin.templateOf(b).ports[static_cast<std::size_t>(link.b_port)])
+            // As the skin was laid out, before anything moved or was misreported.
+            int aPort = link.a_port;
+            int bPort = link.b_port;
+            for (const MisportedLink& wrong : world.faults.misportedLinks) {
+                if (wrong.link == l)
+                    (wrong.module == a ? aPort : bPort) = wrong.truePort;
+            }
+            const double gap = (poseAtGravity(world, a) * world.trueTemplate(a).ports[static_cast<std::size_t>(aPort)] -
+                                poseAtGravity(world, b) * world.trueTemplate(b).ports[static_cast<std::size_t>(bPort)])
                                    .norm();
             if (!world.isCable[l]) {
                 EXPECT_LT(gap, 4e-3);

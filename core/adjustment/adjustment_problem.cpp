@@ -1,7 +1,8 @@
 #include "core/adjustment/adjustment_problem.h"
 
-#include <cmath>
 #include <stdexcept>
+
+#include "core/adjustment/late_cauchy_loss.h"
 
 namespace skincal {
 namespace {
@@ -23,8 +24,8 @@ ceres::Problem::Options problemOptions() {
     return options;
 }
 
-std::unique_ptr<ceres::LossFunction> cauchy(double scale) {
-    return scale > 0 ? std::make_unique<ceres::CauchyLoss>(scale) : nullptr;
+std::unique_ptr<ceres::LossFunction> lossOf(double scale, const AdjustmentOptions& options) {
+    return scale > 0 ? std::make_unique<LateCauchyLoss>(scale, options.lossBegins) : nullptr;
 }
 
 }  // namespace
@@ -33,9 +34,9 @@ AdjustmentProblem::AdjustmentProblem(const AdjustmentInput& input, const BodySta
                                      const AdjustmentOptions& options)
     : input_(input),
       options_(options),
-      pixelLoss_(cauchy(options.pixelLoss)),
-      gravityLoss_(cauchy(options.gravityLoss)),
-      linkLoss_(cauchy(options.linkLoss)),
+      pixelLoss_(lossOf(options.pixelLoss, options)),
+      gravityLoss_(lossOf(options.gravityLoss, options)),
+      linkLoss_(lossOf(options.linkLoss, options)),
       problem_(problemOptions()) {
     copyIn(start);
     addPixels(start);

@@ -26,7 +26,7 @@ class StopWhenCancelled final : public ceres::IterationCallback {
 bool AdjustmentOptions::validate() const {
     return accelerometerSigma > 0 && linkSigma > 0 && biasSigma > 0 && scaleSigma > 0 && misalignmentSigma >= 0 &&
            gravity > 0 && pixelSigmaFloor_px > 0 && pixelSigmaFactor > 0 && accelerometerSigmaFactor > 0 &&
-           pixelLoss >= 0 && gravityLoss >= 0 && linkLoss >= 0 && maxIterations > 0;
+           pixelLoss >= 0 && gravityLoss >= 0 && linkLoss >= 0 && lossBegins >= 0 && maxIterations > 0;
 }
 
 double AdjustmentInput::sigmaOf(const PixelObservation& o, const AdjustmentOptions& options) const {

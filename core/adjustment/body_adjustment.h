@@ -56,6 +56,9 @@ struct AdjustmentOptions {
     double pixelLoss = 3;
     double gravityLoss = 4;
     double linkLoss = 4;
+    /// Up to so many standard deviations every residual counts in full whatever the loss: least squares where nothing
+    /// is wrong, and no smooth transition for solvers that start far away.
+    double lossBegins = 0;
     bool calibrateAccelerometers = true;
     int maxIterations = 100;
 

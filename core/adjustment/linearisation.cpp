@@ -1,5 +1,7 @@
 #include "core/adjustment/linearisation.h"
 
+#include "core/adjustment/late_cauchy_loss.h"
+
 namespace skincal {
 namespace {
 
@@ -9,7 +11,7 @@ double lossWeight(MeasurementKind kind, double squares, const AdjustmentOptions&
                          : kind == MeasurementKind::Gravity ? options.gravityLoss
                          : kind == MeasurementKind::Link    ? options.linkLoss
                                                             : 0;
-    return scale > 0 ? 1 / (1 + squares / (scale * scale)) : 1;
+    return scale > 0 ? LateCauchyLoss(scale, options.lossBegins).weight(squares) : 1;
 }
 
 /// A pivot that is nothing but rounding against the unknown's own information: others take all of it.

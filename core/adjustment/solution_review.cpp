@@ -61,15 +61,6 @@ MeasurementReview reviewOf(const Linearisation& linear, const LinearisedBlock& b
     return review;
 }
 
-struct Sums {
-    double squares = 0;
-    double redundancy = 0;
-};
-
-double factorOf(const Sums& sums, double prior) {
-    return std::sqrt((sums.squares + prior) / (sums.redundancy + prior));
-}
-
 const tl::unexpected<CalibrationError> kDegenerate(CalibrationError{ErrorCode::DegeneratePoints, {}});
 
 std::optional<Matrix6d> covarianceOf(AdjustmentProblem& problem, std::size_t u, const Linearisation& linear,
@@ -92,11 +83,13 @@ std::optional<Matrix6d> covarianceOf(AdjustmentProblem& problem, std::size_t u, 
 
 }  // namespace
 
+double VarianceComponent::factor(double n, double ratio) const {
+    // Without a single check what was assumed stands.
+    return redundancy + n > 0 ? std::sqrt((squares + n * ratio * ratio) / (redundancy + n)) : 1;
+}
+
 tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentInput& input, const BodyState& state,
-                                                              const Gauge& gauge, const AdjustmentOptions& options,
-                                                              const ReviewOptions& review) {
-    if (!review.validate())
-        throw std::logic_error("ReviewOptions out of range");
+                                                              const Gauge& gauge, const AdjustmentOptions& options) {
     AdjustmentProblem::requireConsistent(input, state, options);
     const BodyState complete = AdjustmentProblem::withUpDirections(input, state);
     AdjustmentProblem problem(input, complete, options);
@@ -111,10 +104,10 @@ tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentIn
     result.gravity.resize(state.T_r_u.size());
     for (std::size_t u = 0; u < state.T_r_u.size(); ++u)
         result.gravity[u].resize(input.gravity->of(u).size());
-    std::array<Sums, kMeasurementKinds.size()> sums{};
+    std::array<VarianceComponent, kMeasurementKinds.size()> sums{};
     for (const LinearisedBlock& block : linear.blocks) {
         const MeasurementReview own = reviewOf(linear, block, inverse);
-        Sums& sum = sums.at(static_cast<std::size_t>(block.kind));
+        VarianceComponent& sum = sums.at(static_cast<std::size_t>(block.kind));
         sum.squares += own.squares;
         sum.redundancy += own.redundancy;
         if (block.kind == MeasurementKind::Pixel)
@@ -124,12 +117,7 @@ tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentIn
         else if (block.kind == MeasurementKind::Gravity)
             result.gravity[block.source.index][block.source.entry] = own;
     }
-    const auto factor = [&](MeasurementKind kind) {
-        return factorOf(sums.at(static_cast<std::size_t>(kind)), review.priorMeasurements);
-    };
-    result.noise = {factor(MeasurementKind::Pixel), factor(MeasurementKind::Gravity),
-                    factor(MeasurementKind::Link),  factor(MeasurementKind::Bias),
-                    factor(MeasurementKind::Scale), factor(MeasurementKind::Misalignment)};
+    result.noise = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
     result.covariances.resize(state.T_r_u.size());
     for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
         if (state.T_r_u[u])

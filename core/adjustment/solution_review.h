@@ -19,21 +19,26 @@ struct MeasurementReview {
     double disagreement = 0;
 };
 
-/// By how much the standard deviations assumed for each kind of measurement are too small (> 1) or too large.
-struct NoiseFactors {
-    double pixel = 1;
-    double accelerometer = 1;
-    double link = 1;
-    double bias = 1;
-    double scale = 1;
-    double misalignment = 1;
+/// One kind of measurement (priors are one, too) taken together.
+struct VarianceComponent {
+    double squares = 0;     ///< sum over the kind
+    double redundancy = 0;  ///< likewise
+
+    /// By how much the standard deviation assumed is too small (> 1) or too large. Repeated with the new weights it
+    /// converges to the restricted maximum likelihood estimate.
+    ///   factor^2 = (squares + n (sigma_0 / sigma)^2) / (redundancy + n)
+    /// @param n      what is known beforehand counts as so many measurements,
+    /// @param ratio  and says sigma_0 / sigma.
+    [[nodiscard]] double factor(double n = 0, double ratio = 1) const;
 };
 
-struct ReviewOptions {
-    /// What is assumed counts as so many measurements of each kind: where few are redundant, it stands.
-    double priorMeasurements = 12;
-
-    [[nodiscard]] bool validate() const { return priorMeasurements > 0; }
+struct NoiseComponents {
+    VarianceComponent pixel;
+    VarianceComponent gravity;
+    VarianceComponent link;
+    VarianceComponent bias;
+    VarianceComponent scale;
+    VarianceComponent misalignment;
 };
 
 /// A least-squares solution in numbers.
@@ -41,10 +46,7 @@ struct SolutionReview {
     std::vector<std::optional<MeasurementReview>> pixels;                ///< per entry of AdjustmentInput::pixels
     std::vector<std::optional<MeasurementReview>> links;                 ///< per entry of AdjustmentInput::links
     std::vector<std::vector<std::optional<MeasurementReview>>> gravity;  ///< [module][reading of GravityTable::of]
-    /// Variance components: for the kinds k of measurements (priors are one, too)
-    ///   factor_k^2 = sum squares / sum redundancy
-    /// Repeated with the new weights it converges to the restricted maximum likelihood estimate.
-    NoiseFactors noise;
+    NoiseComponents noise;
     /// Per module (rotation vector in the body frame, then translation; rad, m), relative to the gauge; nothing for
     /// modules that take no part, zero for those of the gauge itself.
     std::vector<std::optional<Matrix6d>> covariances;
@@ -56,7 +58,6 @@ struct SolutionReview {
 /// Ref: Baarda, A testing procedure for use in geodetic networks, 1968; Foerstner, ZfV 104, 1979.
 [[nodiscard]] tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentInput& input,
                                                                             const BodyState& state, const Gauge& gauge,
-                                                                            const AdjustmentOptions& options,
-                                                                            const ReviewOptions& review = {});
+                                                                            const AdjustmentOptions& options);
 
 }  // namespace skincal

@@ -27,7 +27,7 @@ void startWeights(BodySolution& solution, const JointMethodOptions& options) {
     weights.pixelSigmaFactor *= std::max(1.0, weights.pixelSigmaFloor_px / 0.05);
     weights.pixelSigmaFloor_px = kFloor_px;
     weights.pixelLoss = 0;
-    weights.gravityLoss = weights.linkLoss = options.refinement.losses;
+    weights.lossBegins = options.refinement.lossBegins;
 }
 
 /// One solution with the links as they are known, suspects taken out.

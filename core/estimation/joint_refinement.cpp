@@ -12,17 +12,24 @@ namespace skincal {
 namespace {
 
 /// True where the weights changed no more.
-bool reweight(const NoiseFactors& factors, double tolerance, AdjustmentOptions& weights) {
-    weights.pixelSigmaFactor *= factors.pixel;
-    weights.accelerometerSigma *= factors.accelerometer;
-    weights.accelerometerSigmaFactor *= factors.accelerometer;
-    weights.linkSigma *= factors.link;
-    weights.biasSigma *= factors.bias;
-    weights.scaleSigma *= factors.scale;
-    weights.misalignmentSigma *= factors.misalignment;
-    const auto stands = [&](double factor) { return std::abs(factor - 1) < tolerance; };
-    return stands(factors.pixel) && stands(factors.accelerometer) && stands(factors.link) && stands(factors.bias) &&
-           stands(factors.scale) && stands(factors.misalignment);
+bool reweight(const NoiseComponents& noise, const RefinementOptions& options, AdjustmentOptions& weights) {
+    const AdjustmentOptions known;
+    const double n = options.priorMeasurements;
+    bool stands = true;
+    const auto apply = [&](const VarianceComponent& component, double before, double& sigma) {
+        const double factor = component.factor(n, before / sigma);
+        stands = stands && std::abs(factor - 1) < options.weightTolerance;
+        sigma *= factor;
+        return factor;
+    };
+    apply(noise.pixel, known.pixelSigmaFactor, weights.pixelSigmaFactor);
+    weights.accelerometerSigmaFactor *= apply(noise.gravity, known.accelerometerSigma, weights.accelerometerSigma);
+    apply(noise.link, known.linkSigma, weights.linkSigma);
+    apply(noise.bias, known.biasSigma, weights.biasSigma);
+    apply(noise.scale, known.scaleSigma, weights.scaleSigma);
+    if (weights.misalignmentSigma > 0)
+        apply(noise.misalignment, 0.5 * kDegree, weights.misalignmentSigma);
+    return stands;
 }
 
 struct Sum {
@@ -95,8 +102,8 @@ bool judgeViews(const AdjustmentInput& used, const SolutionReview& review, const
 }  // namespace
 
 bool RefinementOptions::validate() const {
-    return review.validate() && rejectionSigmas > 1 && maxReweightings > 0 && weightTolerance > 0 && losses > 0 &&
-           noisyPose > 1 && noisyAccelerometer > 1 && noisyView > 1;
+    return priorMeasurements >= 0 && rejectionSigmas > 1 && maxReweightings > 0 && weightTolerance > 0 &&
+           lossBegins >= 0 && noisyPose > 1 && noisyAccelerometer > 1 && noisyView > 1;
 }
 
 tl::expected<std::optional<SolutionReview>, CalibrationError> refineJointly(BodySolution& solution,
@@ -115,13 +122,13 @@ tl::expected<std::optional<SolutionReview>, CalibrationError> refineJointly(Body
         if (!took)
             return tl::unexpected(took.error());
         iterations += *took;
-        auto found = reviewSolution(used, solution.solved, solution.gauge, solution.weights, options.review);
+        auto found = reviewSolution(used, solution.solved, solution.gauge, solution.weights);
         if (context.isCancelled())
             return tl::unexpected(CalibrationError{ErrorCode::Cancelled, {}});
         if (!found)
             break;
         review = std::move(*found);
-        const bool weightsStand = reweight(review->noise, options.weightTolerance, solution.weights);
+        const bool weightsStand = reweight(review->noise, options, solution.weights);
         const bool gravityStands = judgeGravity(*review, options, solution.input);
         const bool viewsStand = judgeViews(used, *review, options, solution);
         if (weightsStand && gravityStands && viewsStand)

@@ -8,13 +8,15 @@
 namespace skincal {
 
 struct RefinementOptions {
-    ReviewOptions review;
+    /// What is known of skins, webcams and accelerometers in general counts as so many measurements of each kind (the
+    /// defaults of AdjustmentOptions): where few are redundant, it steadies the weights.
+    double priorMeasurements = 4;
     /// Detections farther from the result than this many of their estimated standard deviations are rejected: by chance
     /// it happens to one of 250,000.
     double rejectionSigmas = 5.0;
     int maxReweightings = 12;
     double weightTolerance = 0.01;  ///< relative change of the standard deviations at which they stand
-    double losses = 6;              ///< where gravity and links stop to count in full, in standard deviations
+    double lossBegins = 5;          ///< where gravity and links stop to count in full, in standard deviations
     double noisyPose = 1.6;         ///< poses noisier than the others by this count as much less as they are
     double noisyAccelerometer = 2.5;
     double noisyView = 2.0;

@@ -7,6 +7,7 @@
 
 #include "core/estimation/cable_trials.h"
 #include "core/estimation/noise_findings.h"
+#include "core/estimation/wrong_links.h"
 
 namespace skincal {
 namespace {
@@ -89,6 +90,7 @@ tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& me
             break;
         }
     }
+    nameMisportedLinks(*best, options.suspects.portsMeet);
     noteNoiseFindings(*best);
     return best;
 }

@@ -37,9 +37,8 @@ struct Place {
     std::vector<std::size_t> members;  ///< positions in Seen
 };
 
-/// The place near the view's own that explains the most of some detections.
-std::optional<Place> placeOf(const BodySolution& solution, std::size_t view, const Seen& seen,
-                             const std::vector<std::size_t>& among) {
+/// The place that explains the most of some detections.
+std::optional<Place> placeOf(const BodySolution& solution, const Seen& seen, const std::vector<std::size_t>& among) {
     std::vector<LedCorrespondence> leds;
     for (const std::size_t i : among)
         leds.push_back(seen.leds[i]);
@@ -52,14 +51,16 @@ std::optional<Place> placeOf(const BodySolution& solution, std::size_t view, con
     if (!poses)
         return std::nullopt;
     Place place{poses->front().T_v_o.inverse(), {}};
-    const Isometry3d T = solution.solved.T_r_v[view]->inverse() * place.T_r_v;
-    if (T.translation().norm() > kNear || rotationAngle(T.linear()) > kNearAngle)
-        return std::nullopt;
     for (std::size_t i = 0; i < among.size(); ++i) {
         if (poses->front().inliers[i])
             place.members.push_back(among[i]);
     }
     return place;
+}
+
+std::size_t countedIn(const BodySolution& solution, const Seen& seen) {
+    return static_cast<std::size_t>(std::count_if(seen.pixels.begin(), seen.pixels.end(),
+                                                  [&](std::size_t i) { return !solution.estimate.rejected[i]; }));
 }
 
 }  // namespace
@@ -83,15 +84,21 @@ bool setSecondPlaceAside(BodySolution& solution, std::size_t view) {
     std::vector<std::size_t> all(seen.pixels.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         all[i] = i;
-    const auto first = placeOf(solution, view, seen, all);
+    const auto first = placeOf(solution, seen, all);
     if (!first)
         return false;
     std::vector<std::size_t> rest;
     std::set_difference(all.begin(), all.end(), first->members.begin(), first->members.end(), std::back_inserter(rest));
-    const auto second = rest.size() < kFewest ? std::nullopt : placeOf(solution, view, seen, rest);
-    if (!second || 2 * second->members.size() < rest.size())
-        return false;
-    const Isometry3d T = first->T_r_v.inverse() * second->T_r_v;
+    const auto second = rest.size() < kFewest ? std::nullopt : placeOf(solution, seen, rest);
+    const Isometry3d T = second ? first->T_r_v.inverse() * second->T_r_v : Isometry3d::Identity();
+    if (!second || 2 * second->members.size() < rest.size() || T.translation().norm() > kNear ||
+        rotationAngle(T.linear()) > kNearAngle) {
+        // One place, but not where the view was taken to stand: between two that it can't be at once, or astray.
+        const bool better = first->members.size() > countedIn(solution, seen) + kFewest;
+        if (better)
+            solution.solved.T_r_v[view] = first->T_r_v;
+        return better;
+    }
     BodyEstimate& estimate = solution.estimate;
     const std::string name = solution.measurements->views[view].name;
     Finding finding;

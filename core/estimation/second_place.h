@@ -7,10 +7,10 @@ namespace skincal {
 /// Whether so many detections of a view are rejected that the view itself is to be doubted.
 [[nodiscard]] bool manyRejected(const BodySolution& solution, std::size_t view);
 
-/// Looks in one view for two places of the camera that explain its detections together: it was knocked half-way through
-/// the scan. The view keeps the place that explains more; the other's detections are set aside and the finding noted.
-/// Looks for a near place only (10 cm, 10 degrees): detections that are false by chance fit none.
-/// @return true where detections were set aside.
+/// Looks in one view for two near places of the camera (10 cm, 10 degrees) that explain its detections together: it was
+/// knocked half-way through the scan. The view keeps the place that explains more; the other's detections are set aside
+/// and the finding noted. Where there is one place only that explains more than the view's own, it goes there.
+/// @return true where anything changed: solve again.
 bool setSecondPlaceAside(BodySolution& solution, std::size_t view);
 
 }  // namespace skincal

@@ -64,6 +64,7 @@ struct Finding {
     enum class Kind {
         WrongLink,           ///< reported between ports that do not meet, or a cable that looked like a neighbour
         MovedModule,         ///< since gravity was read
+        MovedPatch,          ///< likewise, as a whole: a joint moved
         WrongTemplate,       ///< the module is of another type than the skin says
         ShakenPose,          ///< the body did not rest while gravity was read
         NoisyAccelerometer,  ///< far worse than the others

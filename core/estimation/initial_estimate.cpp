@@ -212,7 +212,8 @@ BodyState InitialEstimate::state() const {
 }
 
 tl::expected<InitialEstimate, CalibrationError> estimateInitially(const Measurements& measurements,
-                                                                  const GravityTable& gravity, const LinkHistory& links,
+                                                                  const GravityTable& gravity,
+                                                                  const SolutionHistory& history,
                                                                   const InitialEstimateOptions& options,
                                                                   const RunContext& context) {
     if (!options.validate())
@@ -220,7 +221,7 @@ tl::expected<InitialEstimate, CalibrationError> estimateInitially(const Measurem
     const Skin& skin = measurements.skin;
     Work run{{}, options, context, {}, {}};
     run.measurements = &measurements;
-    run.layout = layOutSkin(measurements, gravity, options.layout, links);
+    run.layout = layOutSkin(measurements, gravity, options.layout, history);
     run.input.skin = &skin;
     run.input.camera = &measurements.camera;
     run.input.gravity = &gravity;
@@ -237,6 +238,8 @@ tl::expected<InitialEstimate, CalibrationError> estimateInitially(const Measurem
     if (context.isCancelled())
         return tl::unexpected(CalibrationError{ErrorCode::Cancelled, {}});
     run.gravityFrame = alignPatchesByGravity(run.shapes.up_o, options.gravity);
+    for (const std::size_t u : history.movedPatchesOf)
+        run.gravityFrame.R_g_o[run.layout.patchOf[u]].reset();
     run.input.gravityGroup = gravityGroups(run);
     const auto selections = selectCandidates(run.candidates, run.gravityFrame.R_g_o, options.selection);
     placeByGraph(run, selections);

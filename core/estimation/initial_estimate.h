@@ -55,7 +55,7 @@ struct InitialEstimate {
 /// @param gravity  of the same measurements; the result refers to both, they must outlive it.
 /// Fails with Cancelled. Throws std::logic_error where the options are out of range.
 [[nodiscard]] tl::expected<InitialEstimate, CalibrationError> estimateInitially(
-    const Measurements& measurements, const GravityTable& gravity, const LinkHistory& links,
+    const Measurements& measurements, const GravityTable& gravity, const SolutionHistory& history,
     const InitialEstimateOptions& options = {}, const RunContext& context = {});
 
 }  // namespace skincal

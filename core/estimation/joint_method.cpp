@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/estimation/cable_trials.h"
+#include "core/estimation/alternatives.h"
 #include "core/estimation/noise_findings.h"
 #include "core/estimation/wrong_links.h"
 
@@ -33,9 +33,9 @@ void startWeights(BodySolution& solution, const JointMethodOptions& options) {
 
 /// One solution with the links as they are known, suspects taken out.
 tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measurements, const GravityTable& gravity,
-                                                       LinkHistory& links, const JointMethodOptions& options,
+                                                       SolutionHistory& history, const JointMethodOptions& options,
                                                        const RunContext& context) {
-    auto solution = solveSturdily(measurements, gravity, links, options.start, context);
+    auto solution = solveSturdily(measurements, gravity, history, options.start, context);
     if (!solution)
         return solution;
     solution->estimate.method = "joint";
@@ -51,10 +51,25 @@ tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measu
         solution->estimate.covariances = (*review)->covariances;
         if (round == options.maxTakeOuts)
             break;
-        if (!takeOutSuspects(*solution, usedMeasurements(*solution), **review, links, options.suspects))
+        if (!takeOutSuspects(*solution, usedMeasurements(*solution), **review, history, options.suspects))
             break;
     }
     noteWeights(*solution);
+    return solution;
+}
+
+/// Links that turn out to be cables: again without them, their patches fall apart.
+tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements& measurements,
+                                                              const GravityTable& gravity, SolutionHistory& history,
+                                                              const JointMethodOptions& options,
+                                                              const RunContext& context) {
+    auto solution = solveOnce(measurements, gravity, history, options, context);
+    constexpr int kMostRounds = 3;
+    std::vector<std::string> known;
+    for (int round = 0; solution && history.refuted != known && round < kMostRounds; ++round) {
+        known = history.refuted;
+        solution = solveOnce(measurements, gravity, history, options, context);
+    }
     return solution;
 }
 
@@ -69,27 +84,30 @@ tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& me
                                                           const RunContext& context) {
     if (!options.validate())
         throw std::logic_error("JointMethodOptions out of range");
-    LinkHistory links;
-    auto best = solveOnce(measurements, gravity, links, options, context);
-    // Links that turned out to be cables: again without them, their patches fall apart.
-    constexpr int kMostRounds = 3;
-    std::vector<std::string> known;
-    for (int round = 0; best && links.refuted != known && round < kMostRounds; ++round) {
-        known = links.refuted;
-        best = solveOnce(measurements, gravity, links, options, context);
-    }
+    SolutionHistory history;
+    auto best = solveWithHistory(measurements, gravity, history, options, context);
     if (!best)
         return best;
-    for (const LinkHistory& trial : cableTrials(*best, links, options.maxTrials)) {
-        LinkHistory own = trial;
-        auto next = solveOnce(measurements, gravity, own, options, context);
-        if (!next && next.error().code == ErrorCode::Cancelled)
-            return next;
-        if (next && explainsMore(*next, *best)) {
+    for (int trials = 0; trials < options.maxTrials;) {
+        const auto others = alternatives(*best, history, options.maxTrials - trials);
+        bool better = false;
+        for (const SolutionHistory& other : others) {
+            ++trials;
+            SolutionHistory own = other;
+            auto next = solveWithHistory(measurements, gravity, own, options, context);
+            if (!next && next.error().code == ErrorCode::Cancelled)
+                return next;
+            better = next && explainsMore(*next, *best);
+            if (!better)
+                continue;
             best = std::move(next);
+            history = std::move(own);
             break;
         }
+        if (!better)
+            break;
     }
+    noteMovedPatches(*best, history);
     nameMisportedLinks(*best, options.suspects.portsMeet);
     noteNoiseFindings(*best);
     return best;

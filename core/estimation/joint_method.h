@@ -13,14 +13,14 @@ struct JointMethodOptions {
     RefinementOptions refinement;
     SuspectOptions suspects;
     int maxTakeOuts = 6;  ///< rounds in which suspects are taken out
-    int maxTrials = 4;    ///< links that are tried as cables where a patch does not fit its pictures
+    int maxTrials = 4;    ///< of other explanations where a patch does not fit its pictures
 
     [[nodiscard]] bool validate() const;
 };
 
 /// The joint estimate from the data alone: started by the sturdy method, refined over everything at once with weights
-/// from the residuals; what everything else contradicts is taken out and named; and where a whole part of a patch does
-/// not fit its pictures, the links that may be cables after all are tried as such and kept so where that costs less.
+/// from the residuals; what everything else contradicts is taken out and named; and where a patch does not fit its
+/// pictures, other explanations are tried and kept where they cost less (see alternatives).
 /// Each module has its covariance relative to the first placed view, which is the body frame.
 /// Fails with Cancelled or NotConverged. Where the data do not fix all unknowns the sturdy method's weights stand and
 /// there are no covariances.

@@ -150,7 +150,7 @@ bool LayoutOptions::validate() const {
 }
 
 SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity, const LayoutOptions& options,
-                      const LinkHistory& history) {
+                      const SolutionHistory& history) {
     if (!options.validate())
         throw std::logic_error("LayoutOptions out of range");
     SkinLayout layout{buildSkinGraph(measurements.skin), {}, {}, {}};

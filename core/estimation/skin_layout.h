@@ -30,13 +30,14 @@ struct LayoutOptions {
     [[nodiscard]] bool validate() const;
 };
 
-/// What earlier solutions told of links, per link of the graph; empty before the first.
-struct LinkHistory {
-    std::vector<std::optional<double>>
-        gaps;                          ///< how far apart its ports came out where it was taken for a neighbour, m
-    std::vector<std::string> refuted;  ///< how everything else contradicts it; empty where nothing does
-
-    [[nodiscard]] bool operator==(const LinkHistory&) const = default;
+/// What earlier solutions of the same measurements taught; empty before the first.
+struct SolutionHistory {
+    /// Per link of the graph: how far apart its ports came out where it was taken for a neighbour, m.
+    std::vector<std::optional<double>> gaps;
+    /// Per link of the graph: how everything else contradicts it; empty where nothing does.
+    std::vector<std::string> refuted;
+    /// Modules whose patches moved against the others since gravity was read: its directions are not theirs.
+    std::vector<std::size_t> movedPatchesOf;
 };
 
 /// How far apart in the pictures the two LEDs of a link are: times the distance that they would have as neighbours, at
@@ -52,6 +53,6 @@ struct LinkHistory {
 
 /// Graph, cables by all evidence there is, patches with their origins (paper, Algorithm 1).
 [[nodiscard]] SkinLayout layOutSkin(const Measurements& measurements, const GravityTable& gravity,
-                                    const LayoutOptions& options = {}, const LinkHistory& history = {});
+                                    const LayoutOptions& options = {}, const SolutionHistory& history = {});
 
 }  // namespace skincal

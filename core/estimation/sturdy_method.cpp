@@ -74,10 +74,10 @@ std::vector<LinkKind> kindsOf(const SkinLayout& layout) {
 
 /// One round with the links as they are judged now.
 tl::expected<BodySolution, CalibrationError> solveRound(const Measurements& measurements, const GravityTable& gravity,
-                                                        const LinkHistory& links, const SturdyMethodOptions& options,
-                                                        const RunContext& context) {
+                                                        const SolutionHistory& history,
+                                                        const SturdyMethodOptions& options, const RunContext& context) {
     StageClock clock("initial estimate");
-    auto initial = estimateInitially(measurements, gravity, links, options.initial, context);
+    auto initial = estimateInitially(measurements, gravity, history, options.initial, context);
     if (!initial)
         return tl::unexpected(initial.error());
     BodySolution solution{std::move(*initial), {}, {}, options.adjustment, {}};
@@ -123,21 +123,21 @@ bool SturdyMethodOptions::validate() const {
 }
 
 tl::expected<BodySolution, CalibrationError> solveSturdily(const Measurements& measurements,
-                                                           const GravityTable& gravity, LinkHistory& links,
+                                                           const GravityTable& gravity, SolutionHistory& history,
                                                            const SturdyMethodOptions& options,
                                                            const RunContext& context) {
     if (!options.validate())
         throw std::logic_error("SturdyMethodOptions out of range");
-    auto solution = solveRound(measurements, gravity, links, options, context);
+    auto solution = solveRound(measurements, gravity, history, options, context);
     // A solution tells better than any single measurement which links are cables; so long as it does, solve again.
     for (int more = 0; solution && more < options.maxRelinkings; ++more) {
-        LinkHistory after = links;
-        after.gaps = linkGaps(*solution, links.gaps);
+        SolutionHistory after = history;
+        after.gaps = linkGaps(*solution, history.gaps);
         if (kindsOf(layOutSkin(measurements, gravity, options.initial.layout, after)) == kindsOf(solution->layout))
             break;
-        links = std::move(after);
+        history = std::move(after);
         auto stages = std::move(solution->estimate.stages);
-        solution = solveRound(measurements, gravity, links, options, context);
+        solution = solveRound(measurements, gravity, history, options, context);
         if (solution)
             solution->estimate.stages.insert(solution->estimate.stages.begin(), stages.begin(), stages.end());
     }
@@ -148,8 +148,8 @@ tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& me
                                                           const SturdyMethodOptions& options,
                                                           const RunContext& context) {
     const GravityTable gravity(measurements.skin, measurements.gravity);
-    LinkHistory links;
-    auto solution = solveSturdily(measurements, gravity, links, options, context);
+    SolutionHistory history;
+    auto solution = solveSturdily(measurements, gravity, history, options, context);
     if (!solution)
         return tl::unexpected(solution.error());
     return describeSolution(std::move(*solution), options.initial.pose);

@@ -19,11 +19,11 @@ struct SturdyMethodOptions {
 /// The initial estimate, then a robust adjustment of modules and views over pixels, gravity and links, from a coarse
 /// pixel scale to a fine one. Detections that disagree are rejected and named. Links whose ports came out far apart are
 /// cables after all, those that met are neighbours: solved again with them.
-/// @param links  what is known of links from earlier solutions, and afterwards from this one, too.
+/// @param history  what earlier solutions taught, and afterwards this one, too.
 /// Fails with Cancelled or NotConverged. Where nothing can be placed the solution has no placed view.
 [[nodiscard]] tl::expected<BodySolution, CalibrationError> solveSturdily(const Measurements& measurements,
                                                                          const GravityTable& gravity,
-                                                                         LinkHistory& links,
+                                                                         SolutionHistory& history,
                                                                          const SturdyMethodOptions& options = {},
                                                                          const RunContext& context = {});
 

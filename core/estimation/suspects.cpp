@@ -188,7 +188,7 @@ void takeOutModule(BodySolution& solution, std::size_t u, Finding finding) {
     estimate.findings.push_back(std::move(finding));
 }
 
-void takeOutLink(BodySolution& solution, std::size_t l, double disagreement, LinkHistory& history,
+void takeOutLink(BodySolution& solution, std::size_t l, double disagreement, SolutionHistory& history,
                  const SuspectOptions& options) {
     const GraphLink& link = solution.layout.graph.links()[l];
     const Skin& skin = *solution.input.skin;
@@ -215,7 +215,7 @@ void takeOutLink(BodySolution& solution, std::size_t l, double disagreement, Lin
 }  // namespace
 
 bool takeOutSuspects(BodySolution& solution, const AdjustmentInput& used, const SolutionReview& review,
-                     LinkHistory& links, const SuspectOptions& options) {
+                     SolutionHistory& history, const SuspectOptions& options) {
     if (!options.validate())
         throw std::logic_error("SuspectOptions out of range");
     const Evidence evidence = gather(solution, used, review, options);
@@ -226,7 +226,7 @@ bool takeOutSuspects(BodySolution& solution, const AdjustmentInput& used, const 
             takeOutModule(solution, *suspect.module, explainModule(solution, used, evidence, *suspect.module, options));
         } else {
             linksOut.insert(used.links[*suspect.pair].link);
-            takeOutLink(solution, used.links[*suspect.pair].link, suspect.weight, links, options);
+            takeOutLink(solution, used.links[*suspect.pair].link, suspect.weight, history, options);
         }
     }
     std::erase_if(solution.input.links, [&](const PortPair& pair) { return linksOut.contains(pair.link); });

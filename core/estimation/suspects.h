@@ -26,10 +26,10 @@ struct SuspectOptions {
 ///   - a module whose links disagree together or are all taken for cables because of how it is turned, or whose LED all
 ///     views see at one place, but another than its own: it is of another type than the skin says, where one of the
 ///     skin's templates fits, or else has moved since gravity was read
-/// Links that must be cables are noted in `links` (LinkHistory::refuted) for the next round: without them patches fall
+/// Links that must be cables are noted in `history` for the next round: without them patches fall
 /// apart.
 /// @return true where something was taken out: solve again.
 bool takeOutSuspects(BodySolution& solution, const AdjustmentInput& used, const SolutionReview& review,
-                     LinkHistory& links, const SuspectOptions& options = {});
+                     SolutionHistory& history, const SuspectOptions& options = {});
 
 }  // namespace skincal

@@ -65,21 +65,25 @@ bool linearise(AdjustmentProblem& problem, Linearised& result) {
     ceres::Problem::EvaluateOptions evaluate;
     // Weighted as the losses have it: what counts less tells less about the noise, too.
     evaluate.apply_loss_function = true;
-    std::vector<double*> blocks;
-    problem.ceres().GetParameterBlocks(&blocks);
+    // Columns in the order in which the residuals first need them: Ceres lists its blocks by address, which would round
+    // the same sums differently from run to run.
     Eigen::Index columns = 0;
-    for (double* block : blocks) {
-        if (problem.ceres().IsParameterBlockConstant(block))
-            continue;
-        evaluate.parameter_blocks.push_back(block);
-        result.column[block] = columns;
-        columns += problem.ceres().ParameterBlockTangentSize(block);
-    }
+    std::vector<double*> blocks;
+    const auto addColumns = [&](ceres::ResidualBlockId id) {
+        problem.ceres().GetParameterBlocksForResidualBlock(id, &blocks);
+        for (double* block : blocks) {
+            if (problem.ceres().IsParameterBlockConstant(block) || !result.column.emplace(block, columns).second)
+                continue;
+            evaluate.parameter_blocks.push_back(block);
+            columns += problem.ceres().ParameterBlockTangentSize(block);
+        }
+    };
     Eigen::Index rows = 0;
     for (std::size_t k = 0; k < kMeasurementKinds.size(); ++k) {
         result.firstOfKind.at(k) = rows;
         for (const ceres::ResidualBlockId id : problem.residuals(kMeasurementKinds.at(k))) {
             evaluate.residual_blocks.push_back(id);
+            addColumns(id);
             rows += problem.ceres().GetCostFunctionForResidualBlock(id)->num_residuals();
         }
     }

@@ -30,6 +30,7 @@ void addExportCommand(CommandLine& line);
 void addRenderCommand(CommandLine& line);
 void addSimulateCommand(CommandLine& line);
 void addReproducePaperCommand(CommandLine& line);
+void addAccuracyStudyCommand(CommandLine& line);
 void addDemoCommand(CommandLine& line);
 
 /// Prints "skincal: MESSAGE" to standard error and returns kBadInput.
@@ -41,8 +42,9 @@ int dataDoNotSuffice(const std::string& message);
 /// Prints to standard output; bytes that are no UTF-8, as a path may hold, are replaced.
 void printJson(const nlohmann::ordered_json& json);
 
-/// --seed: a whole number from 0 to 2^64 - 1, and nothing that a conversion would bend into one.
-void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description);
+/// --seed, or another name: a whole number from 0 to 2^64 - 1, and nothing that a conversion would bend into one.
+void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description,
+                   const std::string& option = "--seed");
 
 /// True once the user pressed Ctrl-C.
 bool interrupted();

@@ -23,7 +23,7 @@ void printJson(const nlohmann::ordered_json& json) {
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description) {
+void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& description, const std::string& option) {
     const auto isSeed = [](const std::string& text) -> std::string {
         std::uint64_t value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -31,7 +31,7 @@ void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& de
             return {};
         return "expected a whole number from 0 to 18446744073709551615, found '" + printable(text) + "'";
     };
-    command.add_option("--seed", seed, description)
+    command.add_option(option, seed, description)
         ->check(CLI::Validator(isSeed, "UINT64", "seed"))
         ->capture_default_str();
 }
@@ -55,6 +55,7 @@ int runProgram(int argc, char** argv) {
     addRenderCommand(line);
     addExportCommand(line);
     addReproducePaperCommand(line);
+    addAccuracyStudyCommand(line);
     line.app.footer(
         "Start here:\n"
         "  skincal demo                                    simulate a skin, calibrate it, look at the result\n"

@@ -21,17 +21,6 @@ std::size_t placedIn(const BodyModel& body, PatchId patch) {
 
 }  // namespace
 
-std::string_view trustInWords(Trust trust) {
-    switch (trust) {
-        case Trust::Good:
-            return "good";
-        case Trust::Usable:
-            return "usable";
-        default:
-            return "not to be trusted";
-    }
-}
-
 std::string qualityTable(const BodyModel& body) {
     const BodyQuality& q = body.quality;
     std::string text;
@@ -57,7 +46,7 @@ std::string qualityTable(const BodyModel& body) {
                         orDash(q.link_mismatch_max, 1e3, 2, "mm"));
     text += fmt::format("gravity residual   {} rms\n", orDash(q.gravity_residual_rms, 1, 3, "m/s²"));
     text += fmt::format("method             {}\n", body.generator.method);
-    text += fmt::format("verdict            {}\n", trustInWords(q.trust));
+    text += fmt::format("verdict            {}\n", name(q.trust));
     for (const std::string& missing : q.missing)
         text += fmt::format("missing: {}\n", printable(missing));
     for (const std::string& warning : q.warnings)
@@ -72,7 +61,7 @@ nlohmann::ordered_json qualityJson(const BodyModel& body) {
     const BodyQuality& q = body.quality;
     nlohmann::ordered_json json;
     json["method"] = body.generator.method;
-    json["verdict"] = trustInWords(q.trust);
+    json["verdict"] = name(q.trust);
     json["modules_placed"] = q.modulesPlaced;
     json["modules_total"] = q.modulesTotal;
     json["residual_rms_px"] = number(q.residual_rms_px);

@@ -13,6 +13,4 @@ namespace skincal {
 /// The same for scripts.
 [[nodiscard]] nlohmann::ordered_json qualityJson(const BodyModel& body);
 
-[[nodiscard]] std::string_view trustInWords(Trust trust);
-
 }  // namespace skincal

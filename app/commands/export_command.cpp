@@ -4,7 +4,6 @@
 
 #include "app/command_line.h"
 #include "app/outcome.h"
-#include "app/quality_table.h"
 #include "core/formats/body_json.h"
 #include "core/formats/export_csv.h"
 #include "core/formats/export_ply.h"
@@ -31,7 +30,7 @@ int runExport(const ExportArguments& arguments) {
     if (const auto complaint = complaintAboutOutput(arguments.output, {arguments.body}))
         return badInput(*complaint);
     if (body->quality.trust == Trust::NotToBeTrusted)
-        fmt::print(stderr, "warning: the verdict on this body is \"{}\"\n", trustInWords(body->quality.trust));
+        fmt::print(stderr, "warning: the verdict on this body is \"{}\"\n", name(body->quality.trust));
     std::string bytes;
     if (arguments.format == "urdf")
         bytes = exportUrdf(*body);

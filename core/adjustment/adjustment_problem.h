@@ -1,7 +1,7 @@
 #pragma once
 
 /// The body's state as parameter blocks of Ceres and the residuals on top of them: shared by what solves
-/// (body_adjustment) and what judges the solution (adjustment_statistics). Not for other rooms.
+/// (body_adjustment) and what judges the solution (linearisation). Not for other rooms.
 
 #include <ceres/ceres.h>
 

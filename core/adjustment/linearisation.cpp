@@ -37,21 +37,25 @@ std::optional<std::array<Eigen::Index, 6>> Linearisation::columnsOf(const PoseBl
 bool linearise(AdjustmentProblem& problem, const AdjustmentOptions& options, Linearisation& result) {
     ceres::Problem::EvaluateOptions evaluate;
     evaluate.apply_loss_function = false;
-    std::vector<double*> blocks;
-    problem.ceres().GetParameterBlocks(&blocks);
+    // Columns in the order in which the residuals first need them: Ceres lists its blocks by address, which would round
+    // the same sums differently from run to run.
     Eigen::Index columns = 0;
-    for (double* block : blocks) {
-        if (problem.ceres().IsParameterBlockConstant(block))
-            continue;
-        evaluate.parameter_blocks.push_back(block);
-        result.column[block] = columns;
-        columns += problem.ceres().ParameterBlockTangentSize(block);
-    }
+    std::vector<double*> blocks;
+    const auto addColumns = [&](ceres::ResidualBlockId id) {
+        problem.ceres().GetParameterBlocksForResidualBlock(id, &blocks);
+        for (double* block : blocks) {
+            if (problem.ceres().IsParameterBlockConstant(block) || !result.column.emplace(block, columns).second)
+                continue;
+            evaluate.parameter_blocks.push_back(block);
+            columns += problem.ceres().ParameterBlockTangentSize(block);
+        }
+    };
     Eigen::Index rows = 0;
     for (const MeasurementKind kind : kMeasurementKinds) {
         for (const ResidualOf& source : problem.residuals(kind)) {
             const Eigen::Index size = problem.ceres().GetCostFunctionForResidualBlock(source.id)->num_residuals();
             evaluate.residual_blocks.push_back(source.id);
+            addColumns(source.id);
             result.blocks.push_back({kind, source, rows, size, 1});
             rows += size;
         }

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/adjustment/accelerometer.h"
@@ -86,6 +87,9 @@ struct StageReport {
 };
 
 enum class Trust { Good, Usable, NotToBeTrusted };
+
+/// "good", "usable" or "not to be trusted", in files as in print.
+[[nodiscard]] std::string_view name(Trust trust);
 
 /// The figures a person needs to trust or refuse the result.
 struct BodyQuality {

@@ -105,7 +105,6 @@ Json toJson(const BodyView& view) {
 }
 
 Json toJson(const BodyQuality& q) {
-    static constexpr std::array kTrust{"good", "usable", "not to be trusted"};
     Json json;
     json["modules_placed"] = q.modulesPlaced;
     json["modules_total"] = q.modulesTotal;
@@ -118,7 +117,7 @@ Json toJson(const BodyQuality& q) {
         json["condition"][key] = value;
     json["warnings"] = q.warnings;
     json["missing"] = q.missing;
-    json["verdict"] = kTrust.at(static_cast<std::size_t>(q.trust));
+    json["verdict"] = name(q.trust);
     return json;
 }
 

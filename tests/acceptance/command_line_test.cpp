@@ -191,9 +191,27 @@ TEST_F(CommandLineTest, OnlySeedsThatAreOnes) {
     for (const char* seed : {"-1", "18446744073709551616", "1.5", "0x10", "''"}) {
         EXPECT_EQ(run(std::string("simulate plane --seed ") + seed + " -o " + at("w")).code, 2) << seed;
         EXPECT_EQ(run(std::string("demo --seed ") + seed + " -o " + at("w")).code, 2) << seed;
+        EXPECT_EQ(run(std::string("accuracy-study --first-seed ") + seed).code, 2) << seed;
     }
     EXPECT_FALSE(std::filesystem::exists(at("w")));
     EXPECT_EQ(run("simulate plane --seed 18446744073709551615 -o " + at("w")).code, 0);
+}
+
+TEST_F(CommandLineTest, TheAccuracyStudyPrintsATableOrJson) {
+    const Outcome table = run("accuracy-study --worlds 1 --first-seed 7");
+    EXPECT_EQ(table.code, 0) << table.error;
+    EXPECT_THAT(table.output, testing::AllOf(HasSubstr("| 7 | arm, 2 patches"), HasSubstr("geometric mean")));
+    const Outcome outcome = run("accuracy-study --worlds 1 --first-seed 7 --json");
+    EXPECT_EQ(outcome.code, 0) << outcome.error;
+    const auto json = nlohmann::json::parse(outcome.output);
+    ASSERT_EQ(json.at("worlds").size(), 1U);
+    const auto& world = json.at("worlds").at(0);
+    EXPECT_EQ(world.at("seed"), 7);
+    EXPECT_GT(world.at("from_data").at("position_rms"), 0);
+    EXPECT_GT(world.at("from_truth").at("position_rms"), 0);
+    EXPECT_EQ(json.at("summary").at("ratio_worst"), world.at("ratio"));
+    EXPECT_EQ(json.at("summary").at("nees").at("worlds"), 1);
+    EXPECT_EQ(run("accuracy-study --worlds 0").code, 2);
 }
 
 TEST_F(CommandLineTest, AFullDiskBehindStandardOutputIsAnError) {
@@ -261,7 +279,7 @@ TEST_F(CommandLineTest, UsageErrorsGiveTwoAndHelpGivesZero) {
     EXPECT_EQ(run("calibrate x --method magic").code, 2);
     EXPECT_EQ(run("--version").code, 0);
     for (const char* command :
-         {"", "calibrate", "simulate", "compare", "render", "export", "reproduce-paper", "demo"}) {
+         {"", "calibrate", "simulate", "compare", "render", "export", "reproduce-paper", "accuracy-study", "demo"}) {
         const Outcome help = run(std::string(command) + " --help");
         EXPECT_EQ(help.code, 0) << command;
         EXPECT_GT(help.output.size(), 200U) << command;

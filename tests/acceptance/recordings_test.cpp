@@ -151,10 +151,14 @@ INSTANTIATE_TEST_SUITE_P(Scans, PicturesTable, testing::Values("freeform-single-
                          });
 
 TEST(RecordingsOfOthers, TheSameRecordingGivesTheSameBody) {
-    const Solved a = solve(recordingNamed("flat-detections"), Method::Sturdy);
-    const Solved b = solve(recordingNamed("flat-detections"), Method::Sturdy);
-    for (std::size_t u = 0; u < a.body.modules.size(); ++u)
-        EXPECT_TRUE(a.body.modules[u].T_body_module->matrix() == b.body.modules[u].T_body_module->matrix());
+    for (const Method method : {Method::Sturdy, Method::Joint}) {
+        const Solved a = solve(recordingNamed("flat-detections"), method);
+        const Solved b = solve(recordingNamed("flat-detections"), method);
+        for (std::size_t u = 0; u < a.body.modules.size(); ++u) {
+            EXPECT_TRUE(a.body.modules[u].T_body_module->matrix() == b.body.modules[u].T_body_module->matrix());
+            EXPECT_EQ(a.body.modules[u].covariance, b.body.modules[u].covariance);
+        }
+    }
 }
 
 }  // namespace

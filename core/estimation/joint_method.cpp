@@ -89,7 +89,7 @@ tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& me
     if (!best)
         return best;
     for (int trials = 0; trials < options.maxTrials;) {
-        const auto others = alternatives(*best, history, options.maxTrials - trials);
+        const auto others = alternatives(*best, history, options.start.initial.layout, options.maxTrials - trials);
         bool better = false;
         for (const SolutionHistory& other : others) {
             ++trials;

@@ -46,7 +46,7 @@ void nameMisportedLinks(BodySolution& solution, double limit) {
             !solution.solved.T_r_u[link.b])
             continue;
         const auto meet = portsThatMeet(solution, link, limit);
-        if (!meet)
+        if (!meet || *meet == std::pair(static_cast<std::size_t>(link.a_port), static_cast<std::size_t>(link.b_port)))
             continue;
         Finding finding;
         finding.kind = Finding::Kind::WrongLink;

@@ -9,6 +9,17 @@
 namespace skincal {
 namespace {
 
+std::optional<Matrix3d> gravityInBody(const InitialEstimate& run) {
+    Matrix3d sum = Matrix3d::Zero();
+    for (std::size_t k = 0; k < run.body.T_r_o.size(); ++k) {
+        if (run.body.T_r_o[k] && run.gravityFrame.R_g_o[k])
+            sum += run.body.T_r_o[k]->linear() * run.gravityFrame.R_g_o[k]->transpose();
+    }
+    if (sum.isZero())
+        return std::nullopt;
+    return nearestRotation(sum);
+}
+
 /// Everything that is known between the steps.
 struct Work : InitialEstimate {
     const InitialEstimateOptions& options;
@@ -109,39 +120,6 @@ void placeByGraph(Work& run, const std::vector<Selection>& selections) {
         run.body.T_r_o[k] = poses[views + k];
 }
 
-std::optional<Matrix3d> gravityInBody(const Work& run) {
-    Matrix3d sum = Matrix3d::Zero();
-    for (std::size_t k = 0; k < run.body.T_r_o.size(); ++k) {
-        if (run.body.T_r_o[k] && run.gravityFrame.R_g_o[k])
-            sum += run.body.T_r_o[k]->linear() * run.gravityFrame.R_g_o[k]->transpose();
-    }
-    if (sum.isZero())
-        return std::nullopt;
-    return nearestRotation(sum);
-}
-
-/// Attaches what the graph could not reach, until nothing changes.
-void attachRest(Work& run) {
-    const auto R_r_g = gravityInBody(run);
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (std::size_t v = 0; v < run.body.T_r_v.size(); ++v) {
-            if (!run.body.T_r_v[v]) {
-                run.body.T_r_v[v] = resectView(run.sightings, v, run.body, run.measurements->camera, run.options.pose,
-                                               run.options.selection.decisiveCostRatio);
-                changed = changed || run.body.T_r_v[v].has_value();
-            }
-        }
-        for (std::size_t k = 0; R_r_g && k < run.body.T_r_o.size(); ++k) {
-            if (!run.body.T_r_o[k] && run.gravityFrame.R_g_o[k]) {
-                run.body.T_r_o[k] = triangulatePatch(run.sightings, k, *R_r_g * *run.gravityFrame.R_g_o[k], run.body,
-                                                     run.measurements->camera);
-                changed = changed || run.body.T_r_o[k].has_value();
-            }
-        }
-    }
-}
-
 /// Patches that hung from gravity as one piece share its directions; each other one has its own.
 std::vector<std::size_t> gravityGroups(const Work& run) {
     std::vector<std::size_t> groupOfPatch(run.layout.patches.size(), 0);
@@ -165,7 +143,7 @@ std::vector<ViewAlternative> placeUndecided(Work& run, std::vector<Selection> se
         placeByGraph(run, selections);
         for (Selection& selection : selections)
             selection.undecided = true;
-        attachRest(run);
+        attachRest(run, run.sightings, run.options);
     }
     std::vector<ViewAlternative> alternatives;
     std::vector<bool> standsIn(run.body.T_r_v.size(), false);
@@ -211,6 +189,28 @@ BodyState InitialEstimate::state() const {
     return result;
 }
 
+void attachRest(InitialEstimate& run, const std::vector<PatchSighting>& sightings,
+                const InitialEstimateOptions& options) {
+    const auto R_r_g = gravityInBody(run);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t v = 0; v < run.body.T_r_v.size(); ++v) {
+            if (!run.body.T_r_v[v]) {
+                run.body.T_r_v[v] = resectView(sightings, v, run.body, run.measurements->camera, options.pose,
+                                               options.selection.decisiveCostRatio);
+                changed = changed || run.body.T_r_v[v].has_value();
+            }
+        }
+        for (std::size_t k = 0; R_r_g && k < run.body.T_r_o.size(); ++k) {
+            if (!run.body.T_r_o[k] && run.gravityFrame.R_g_o[k]) {
+                run.body.T_r_o[k] = triangulatePatch(sightings, k, *R_r_g * *run.gravityFrame.R_g_o[k], run.body,
+                                                     run.measurements->camera);
+                changed = changed || run.body.T_r_o[k].has_value();
+            }
+        }
+    }
+}
+
 tl::expected<InitialEstimate, CalibrationError> estimateInitially(const Measurements& measurements,
                                                                   const GravityTable& gravity,
                                                                   const SolutionHistory& history,
@@ -243,7 +243,7 @@ tl::expected<InitialEstimate, CalibrationError> estimateInitially(const Measurem
     run.input.gravityGroup = gravityGroups(run);
     const auto selections = selectCandidates(run.candidates, run.gravityFrame.R_g_o, options.selection);
     placeByGraph(run, selections);
-    attachRest(run);
+    attachRest(run, run.sightings, run.options);
     run.alternatives = placeUndecided(run, selections);
     return std::move(static_cast<InitialEstimate&>(run));
 }

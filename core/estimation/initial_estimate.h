@@ -12,6 +12,7 @@
 #include "core/estimation/missing_data.h"
 #include "core/estimation/patch_pose.h"
 #include "core/estimation/patch_shape.h"
+#include "core/estimation/patch_sightings.h"
 #include "core/estimation/pose_graph.h"
 #include "core/estimation/skin_layout.h"
 #include "core/estimation/view_alternatives.h"
@@ -45,6 +46,11 @@ struct InitialEstimate {
     /// Modules of placed patches and views in one frame.
     [[nodiscard]] BodyState state() const;
 };
+
+/// Attaches the views and patches that the body so far can reach, until nothing changes: views by all placed LEDs
+/// together, patches by triangulation with the rotation that gravity gives them.
+void attachRest(InitialEstimate& estimate, const std::vector<PatchSighting>& sightings,
+                const InitialEstimateOptions& options);
 
 /// The paper's pipeline without its weaknesses:
 ///   1. patch shapes by least squares over gravity and link points, accelerometers calibrated on the way

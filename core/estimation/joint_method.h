@@ -29,6 +29,17 @@ struct JointMethodOptions {
                                                                         const JointMethodOptions& options = {},
                                                                         const RunContext& context = {});
 
+/// The same for measurements to which views, detections or gravity poses were added (or views taken away at the end),
+/// from the solution before: what is new is attached to it and everything is solved once from there, with the weights
+/// that it had. Quick enough to follow an operator; what was taken out stays out. Solves anew where the skin has
+/// changed or nothing was placed before.
+/// @param last  it, and what it was made of, must still be there.
+[[nodiscard]] tl::expected<BodySolution, CalibrationError> updateJointly(const BodySolution& last,
+                                                                         const Measurements& measurements,
+                                                                         const GravityTable& gravity,
+                                                                         const JointMethodOptions& options = {},
+                                                                         const RunContext& context = {});
+
 /// solveJointly as a body model.
 [[nodiscard]] tl::expected<BodyModel, CalibrationError> calibrateJoint(const Measurements& measurements,
                                                                        const JointMethodOptions& options = {},

@@ -7,6 +7,11 @@ namespace skincal {
 void noteNoiseFindings(BodySolution& solution) {
     constexpr double kWorthNaming = 2;
     const AdjustmentInput& input = solution.input;
+    // Anew after each solution.
+    std::erase_if(solution.estimate.findings, [](const Finding& f) {
+        return f.kind == Finding::Kind::ShakenPose || f.kind == Finding::Kind::NoisyAccelerometer ||
+               f.kind == Finding::Kind::UnsteadyView;
+    });
     for (std::size_t p = 0; p < input.poseNoise.size(); ++p) {
         if (input.poseNoise[p] < kWorthNaming)
             continue;

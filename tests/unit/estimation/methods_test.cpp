@@ -342,7 +342,7 @@ TEST(JointMethod, WeighsByWhatItFindsAndKnowsHowGoodItIs) {
     }
     EXPECT_FALSE(calibrateSturdy(world.measurements)->modules[0].covariance);
     JointMethodOptions bad;
-    bad.rejectionSigmas = 1;
+    bad.refinement.rejectionSigmas = 1;
     EXPECT_THROW((void)calibrateJoint(world.measurements, bad), std::logic_error);
 }
 

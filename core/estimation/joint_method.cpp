@@ -28,6 +28,7 @@ void startWeights(BodySolution& solution, const JointMethodOptions& options) {
     weights.pixelSigmaFactor *= std::max(1.0, weights.pixelSigmaFloor_px / 0.05);
     weights.pixelSigmaFloor_px = kFloor_px;
     weights.pixelLoss = 0;
+    weights.misalignmentSigma = options.misalignmentSigma;
     weights.lossBegins = options.refinement.lossBegins;
 }
 
@@ -76,7 +77,7 @@ tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements
 }  // namespace
 
 bool JointMethodOptions::validate() const {
-    return start.validate() && refinement.validate() && suspects.validate() && maxTakeOuts >= 0 && maxTrials >= 0;
+    return start.validate() && refinement.validate() && suspects.validate() && misalignmentSigma >= 0 && maxTakeOuts >= 0 && maxTrials >= 0;
 }
 
 tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& measurements, const GravityTable& gravity,

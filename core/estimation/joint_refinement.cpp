@@ -27,8 +27,6 @@ bool reweight(const NoiseComponents& noise, const RefinementOptions& options, Ad
     apply(noise.link, known.linkSigma, weights.linkSigma);
     apply(noise.bias, known.biasSigma, weights.biasSigma);
     apply(noise.scale, known.scaleSigma, weights.scaleSigma);
-    if (weights.misalignmentSigma > 0)
-        apply(noise.misalignment, 0.5 * kDegree, weights.misalignmentSigma);
     return stands;
 }
 

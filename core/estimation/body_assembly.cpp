@@ -174,8 +174,50 @@ constexpr double kLinkUsable = 5e-3;
 constexpr double kGravityGood = 0.15;
 constexpr double kGravityUsable = 0.5;
 
+/// Rms over the modules of what their covariances say; nothing without covariances.
+struct Uncertainty {
+    double position = 0;  ///< m per axis
+    double rotation = 0;  ///< rad per axis
+};
+std::optional<Uncertainty> uncertaintyOf(const BodyModel& body) {
+    double position = 0;
+    double rotation = 0;
+    std::size_t count = 0;
+    for (const BodyModule& module : body.modules) {
+        if (!module.covariance)
+            continue;
+        rotation += module.covariance->topLeftCorner<3, 3>().trace() / 3;
+        position += module.covariance->bottomRightCorner<3, 3>().trace() / 3;
+        ++count;
+    }
+    if (count == 0)
+        return std::nullopt;
+    return Uncertainty{rootMean(position, count), rootMean(rotation, count)};
+}
+
+// Standard deviations (rms over the modules, per axis) beyond which a result is merely usable, and not even that.
+constexpr Uncertainty kUncertaintyGood{3e-3, 3 * kDegree};
+constexpr Uncertainty kUncertaintyUsable{10e-3, 10 * kDegree};
+
+/// The verdict that the uncertainty allows; says so where it is not good.
+Trust judgeUncertainty(BodyQuality& quality, const Uncertainty& found) {
+    quality.condition["position sigma"] = found.position;
+    quality.condition["rotation sigma"] = found.rotation;
+    const auto within = [&](const Uncertainty& limit) {
+        return found.position <= limit.position && found.rotation <= limit.rotation;
+    };
+    if (within(kUncertaintyGood))
+        return Trust::Good;
+    quality.warnings.push_back(
+        fmt::format("what was measured fixes modules to {:.1f} mm and {:.1f}° only: add gravity poses and views",
+                    found.position * 1e3, found.rotation / kDegree));
+    return within(kUncertaintyUsable) ? Trust::Usable : Trust::NotToBeTrusted;
+}
+
 void judge(BodyModel& body, Trust trustAtMost) {
     BodyQuality& quality = body.quality;
+    if (const auto uncertainty = uncertaintyOf(body))
+        trustAtMost = std::max(trustAtMost, judgeUncertainty(quality, *uncertainty));
     quality.modulesTotal = body.modules.size();
     quality.modulesPlaced = static_cast<std::size_t>(std::count_if(
         body.modules.begin(), body.modules.end(), [](const BodyModule& m) { return m.T_body_module.has_value(); }));

@@ -30,6 +30,7 @@ struct BodyEstimate {
     /// Likewise: why a detection does not count wherever it lies, being part of a finding; empty where it does.
     std::vector<std::string> setAside;
     std::vector<std::string> moduleTrouble;  ///< per module: why it has no pose though its patch has; empty where none
+    std::vector<std::size_t> notHeld;        ///< modules that nothing measured holds
     std::vector<std::string> linkTrouble;    ///< per link of the graph: why a neighbour does not count as one
     std::map<std::string, double> condition;
     std::vector<std::string> warnings;

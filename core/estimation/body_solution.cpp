@@ -11,30 +11,6 @@
 namespace skincal {
 namespace {
 
-/// Modules that started flat for want of readings keep a pose only where the rest of the data came to hold it.
-void dropWhatNothingHolds(BodySolution& solution, const Measurements& measurements, BodyState& state) {
-    const AdjustmentInput used = usedMeasurements(solution);
-    std::vector<bool> measured = solution.shapes.assumedFlat;
-    measured.flip();
-    const std::vector<bool> held = heldModules(used, state, std::move(measured));
-    std::vector<std::size_t> dropped;
-    for (std::size_t u = 0; u < held.size(); ++u) {
-        if (!held[u] && state.T_r_u[u]) {
-            state.T_r_u[u].reset();
-            dropped.push_back(u);
-        }
-    }
-    for (std::size_t k = 0; k < solution.layout.patches.size(); ++k) {
-        for (std::size_t i = 0; i < solution.layout.patches[k].modules.size(); ++i) {
-            if (!held[solution.layout.patches[k].modules[i]] &&
-                solution.shapes.assumedFlat[solution.layout.patches[k].modules[i]])
-                solution.shapes.shapes[k].T_o_u[i].reset();
-        }
-    }
-    if (!dropped.empty())
-        solution.estimate.missing.push_back(whyNotHeld(measurements.skin, dropped));
-}
-
 void reportMissing(BodySolution& solution, const Measurements& measurements, const BodyState& state,
                    const PatchPoseOptions& pose) {
     BodyEstimate& estimate = solution.estimate;
@@ -174,10 +150,33 @@ std::vector<std::optional<double>> linkGaps(const BodySolution& solution, std::v
     return before;
 }
 
+void dropWhatNothingHolds(BodySolution& solution) {
+    BodyState& state = solution.solved;
+    const AdjustmentInput used = usedMeasurements(solution);
+    std::vector<bool> measured = solution.shapes.assumedFlat;
+    measured.flip();
+    const std::vector<bool> held = heldModules(used, state, measured);
+    for (std::size_t u = 0; u < held.size(); ++u) {
+        if (held[u] || !state.T_r_u[u])
+            continue;
+        state.T_r_u[u].reset();
+        solution.estimate.notHeld.push_back(u);
+    }
+    for (std::size_t k = 0; k < solution.layout.patches.size(); ++k) {
+        const Patch& patch = solution.layout.patches[k];
+        for (std::size_t i = 0; i < patch.modules.size(); ++i) {
+            if (!held[patch.modules[i]] && solution.shapes.assumedFlat[patch.modules[i]])
+                solution.shapes.shapes[k].T_o_u[i].reset();
+        }
+    }
+}
+
 BodyModel describeSolution(BodySolution solution, const PatchPoseOptions& pose) {
     const Measurements& measurements = *solution.measurements;
     BodyState& state = solution.solved;
-    dropWhatNothingHolds(solution, measurements, state);
+    dropWhatNothingHolds(solution);
+    if (!solution.estimate.notHeld.empty())
+        solution.estimate.missing.push_back(whyNotHeld(measurements.skin, solution.estimate.notHeld));
     reportMissing(solution, measurements, state, pose);
     listPatchViews(solution, state);
     placePatchFrames(solution, state);

@@ -29,6 +29,10 @@ void rejectFarDetections(BodySolution& solution, double sigmas);
 [[nodiscard]] std::vector<std::optional<double>> linkGaps(const BodySolution& solution,
                                                           std::vector<std::optional<double>> before);
 
+/// Takes the poses away from modules that started flat for want of readings and that the rest of the data did not come
+/// to hold (see heldModules): nothing is made up.
+void dropWhatNothingHolds(BodySolution& solution);
+
 /// One adjustment, and its result in the solution. @return how many iterations it took.
 /// Fails with Cancelled or NotConverged.
 [[nodiscard]] tl::expected<int, CalibrationError> adjustSolution(BodySolution& solution, const AdjustmentInput& input,

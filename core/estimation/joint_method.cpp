@@ -43,6 +43,7 @@ tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measu
     if (!solution->anyViewPlaced())
         return solution;
     startWeights(*solution, options);
+    dropWhatNothingHolds(*solution);
     for (int round = 0;; ++round) {
         auto review = refineJointly(*solution, options.refinement, context);
         if (!review)
@@ -77,7 +78,8 @@ tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements
 }  // namespace
 
 bool JointMethodOptions::validate() const {
-    return start.validate() && refinement.validate() && suspects.validate() && misalignmentSigma >= 0 && maxTakeOuts >= 0 && maxTrials >= 0;
+    return start.validate() && refinement.validate() && suspects.validate() && misalignmentSigma >= 0 &&
+           maxTakeOuts >= 0 && maxTrials >= 0;
 }
 
 tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& measurements, const GravityTable& gravity,

@@ -12,8 +12,8 @@ struct JointMethodOptions {
     SturdyMethodOptions start;
     RefinementOptions refinement;
     SuspectOptions suspects;
-    /// How far accelerometers sit askew on their boards, rad about each axis, where the maker says so; 0 estimates none.
-    /// It stands as given: gravity can't tell it from how a module is turned, links and pictures hardly.
+    /// How far accelerometers sit askew on their boards, rad about each axis, where the maker says so; 0 estimates
+    /// none. It stands as given: gravity can't tell it from how a module is turned, links and pictures hardly.
     double misalignmentSigma = 0;
     int maxTakeOuts = 6;  ///< rounds in which suspects are taken out
     int maxTrials = 4;    ///< of other explanations where a patch does not fit its pictures

@@ -117,6 +117,8 @@ tl::expected<std::optional<SolutionReview>, CalibrationError> refineJointly(Body
         rejectFarDetections(solution, options.rejectionSigmas);
         AdjustmentInput used = usedMeasurements(solution);
         const auto took = adjustSolution(solution, used, context);
+        if (!took && took.error().code == ErrorCode::TooFewPoints)
+            break;  // nothing is left that the gauge could hold
         if (!took)
             return tl::unexpected(took.error());
         iterations += *took;

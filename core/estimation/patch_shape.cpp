@@ -37,11 +37,13 @@ std::optional<std::size_t> gravityReference(const GravityTable& gravity, const P
 void startShape(const Skin& skin, const SkinLayout& layout, const GravityTable& gravity, const Patch& patch,
                 BodyState& state, std::vector<bool>& assumedFlat) {
     const auto reference = gravityReference(gravity, patch);
-    if (!reference)
-        return;
     // In a frame that is turned as the reference is, with the origin in the middle.
     auto& T_x_u = state.T_r_u;
-    const auto direct = [&](std::size_t u) { return relativeRotation(gravity, *reference, u); };
+    const auto direct = [&](std::size_t u) -> tl::expected<RelativeRotation, CalibrationError> {
+        if (!reference)
+            return tl::unexpected(CalibrationError{ErrorCode::TooFewPoses, {}});
+        return relativeRotation(gravity, *reference, u);
+    };
     const auto fromOrigin = direct(patch.origin);
     T_x_u[patch.origin] = makeIsometry(fromOrigin ? fromOrigin->R_c_n : Matrix3d::Identity(), Vector3d::Zero());
     assumedFlat[patch.origin] = !fromOrigin;

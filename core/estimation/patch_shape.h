@@ -40,8 +40,8 @@ struct PatchShapesResult {
 /// estimated from the same poses: loops close, and an uncalibrated sensor costs 0.35 degrees instead of 1.8. The noise
 /// is estimated from the residuals and the fit repeated with it; it is the median's, so that one broken sensor spoils
 /// only itself. A module without usable readings starts flat beside its neighbour: link points and pixels may turn it,
-/// but until something measured holds it (see heldModules) its rotation is a guess. Patches without any usable reading
-/// have no shape. Fails with Cancelled.
+/// but until something measured holds it (see heldModules) its rotation is a guess. So is the whole shape of a patch
+/// without any usable reading. Fails with Cancelled.
 [[nodiscard]] tl::expected<PatchShapesResult, CalibrationError> estimatePatchShapes(const Skin& skin,
                                                                                     const SkinLayout& layout,
                                                                                     const GravityTable& gravity,

@@ -47,8 +47,15 @@ tl::expected<int, CalibrationError> adjustGradually(BodySolution& solution, cons
         weights.accelerometerSigma = std::clamp(solution.shapes.accelerometerSigma, 1e-3, 2.0);
     const double floor_px = options.adjustment.pixelSigmaFloor_px;
     int iterations = 0;
-    for (const double scale_px : {1.0, 0.25, floor_px}) {
-        context.report("adjusting the body", 1 - scale_px);
+    // Shapes that are guessed flat are off by many pixels, those from gravity by one or two.
+    const auto& guessed = solution.shapes.assumedFlat;
+    const bool mostlyGuessed =
+        2 * std::count(guessed.begin(), guessed.end(), true) > static_cast<std::ptrdiff_t>(guessed.size());
+    std::vector<double> scales_px{1.0, 0.25, floor_px};
+    if (mostlyGuessed)
+        scales_px.insert(scales_px.begin(), {30.0, 10.0, 3.0});
+    for (const double scale_px : scales_px) {
+        context.report("adjusting the body", std::max(0.0, 1 - scale_px));
         weights.pixelSigmaFloor_px = std::max(floor_px, scale_px);
         const auto took = adjustSolution(solution, solution.input, context);
         if (!took)

@@ -198,14 +198,15 @@ TEST(PatchShape, ASilentOriginIsReachedThroughItsNeighbours) {
         EXPECT_TRUE(T);
 }
 
-TEST(PatchShape, WithoutGravityAPatchHasNoShape) {
+TEST(PatchShape, WithoutGravityAPatchIsGuessedFlat) {
     Random random(7, "none");
     SyntheticOptions options = withoutViews({{3, 3, 0}});
     options.poses = 0;
     const Shaped shaped(makeWorld(random, options));
     const auto found = shaped.estimate();
     for (const auto& T : found.shapes[0].T_o_u)
-        EXPECT_FALSE(T);
+        EXPECT_LT(rotationAngle(T.value().linear()), 1e-6);
+    EXPECT_EQ(found.assumedFlat, std::vector<bool>(9, true)) << "and says that it is a guess";
     EXPECT_EQ(found.accelerometerSigma, 0);
     EXPECT_FALSE(shaped.chain(0).T_o_u[0]);
     EXPECT_TRUE(shaped.chain(0).T_o_u[4]);

@@ -8,6 +8,7 @@ namespace skincal {
 std::optional<RigidFit> fitModule(const BodySolution& solution, std::size_t module, const ModuleTemplate& type,
                                   const std::optional<Vector3d>& led) {
     const Skin& skin = *solution.input.skin;
+    const auto& T_r_u = solution.solved.T_r_u[module];
     std::vector<Vector3d> own;
     std::vector<Vector3d> body;
     for (const GraphLink& link : solution.layout.graph.links()) {
@@ -19,19 +20,28 @@ std::optional<RigidFit> fitModule(const BodySolution& solution, std::size_t modu
         const auto& T_r_n = solution.solved.T_r_u[neighbour];
         if (!T_r_n || port >= type.ports.size())
             continue;
+        const Vector3d place = *T_r_n * skin.port(neighbour, isA ? link.b_port : link.a_port);
+        // The far end of a cable says nothing.
+        constexpr double kNear = 3;  // port radii
+        if (T_r_u && (place - T_r_u->translation()).norm() > kNear * type.portRadius())
+            continue;
         own.push_back(type.ports[port]);
-        body.push_back(*T_r_n * skin.port(neighbour, isA ? link.b_port : link.a_port));
+        body.push_back(place);
     }
     if (led) {
         own.push_back(type.led);
         body.push_back(*led);
     }
-    if (own.size() < 3)
+    constexpr std::size_t kFixAPose = 3;
+    if (own.size() < 2 || (own.size() < kFixAPose && !T_r_u))
         return std::nullopt;
     const Eigen::Map<const Eigen::Matrix3Xd> from(own.front().data(), 3, static_cast<Eigen::Index>(own.size()));
     const Eigen::Map<const Eigen::Matrix3Xd> to(body.front().data(), 3, static_cast<Eigen::Index>(body.size()));
     RigidFit fit;
-    fit.T_r_u.matrix() = Eigen::umeyama(from, to, false);
+    if (own.size() < kFixAPose)
+        fit.T_r_u = makeIsometry(T_r_u->linear(), (to - T_r_u->linear() * from).rowwise().mean());
+    else
+        fit.T_r_u.matrix() = Eigen::umeyama(from, to, false);
     fit.rms = std::sqrt((fit.T_r_u * from - to).colwise().squaredNorm().mean());
     return fit;
 }

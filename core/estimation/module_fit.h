@@ -15,7 +15,7 @@ struct RigidFit {
 
 /// The pose that fits best a module of the given type (Umeyama, no scale). Links count whatever they were taken for.
 /// @param led  where the views see its LED, if they do.
-/// Nothing from fewer than three points: they always fit.
+/// Two points fix no pose: there it stays turned as the solution has it. Nothing from fewer.
 [[nodiscard]] std::optional<RigidFit> fitModule(const BodySolution& solution, std::size_t module,
                                                 const ModuleTemplate& type, const std::optional<Vector3d>& led);
 

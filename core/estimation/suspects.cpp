@@ -63,10 +63,13 @@ Evidence gather(const BodySolution& solution, const AdjustmentInput& used, const
     const auto& links = solution.layout.graph.links();
     for (std::size_t l = 0; l < links.size(); ++l) {
         const LinkReason reason = solution.layout.verdicts[l].reason;
+        const bool placed = solution.solved.T_r_u[links[l].a] && solution.solved.T_r_u[links[l].b];
+        // Too far apart for neighbours, too near for a cable: one of the modules is not where it was.
+        const bool torn = reason == LinkReason::Gap && placed && gapOf(solution, links[l]) < options.farApart;
         for (const std::size_t end : {links[l].a, links[l].b}) {
             ++evidence.modules[end].allLinks;
             evidence.modules[end].turnedLinks += reason == LinkReason::Twist || reason == LinkReason::Bend ? 1 : 0;
-            evidence.modules[end].takenOut += solution.estimate.linkTrouble[l].empty() ? 0 : 1;
+            evidence.modules[end].takenOut += torn || !solution.estimate.linkTrouble[l].empty() ? 1 : 0;
         }
     }
     const auto elsewhere = ledsSeenElsewhere(solution);
@@ -94,7 +97,7 @@ std::optional<Suspect> suspectModule(const BodySolution& solution, const Adjustm
     const bool together = against >= 2 && 2 * against >= own.pairs.size() + own.takenOut;
     if (together && (own.takenOut >= 2 || own.badness > options.linkDisagreement))
         return Suspect{own.badness, u, std::nullopt};
-    const bool turned = own.turnedLinks >= 2 && own.turnedLinks == own.allLinks;
+    const bool turned = own.turnedLinks > 0 && own.turnedLinks == own.allLinks;
     if (turned && otherTemplate(solution, u, ledOf(solution, used, evidence, u), options.fits))
         return Suspect{kSeenElsewhere, u, std::nullopt};
     return std::nullopt;

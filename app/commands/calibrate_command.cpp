@@ -54,7 +54,7 @@ int runCalibrate(const CalibrateArguments& arguments) {
         json["output"] = output.string();
         printJson(json);
     } else {
-        fmt::print("{}\nbody model         {}\n", qualityTable(*body), printable(output.string()));
+        fmt::print("{}", qualityTable(*body, {{"body model", output.string()}}));
     }
     return exitCodeOf(*body);
 }

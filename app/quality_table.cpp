@@ -3,85 +3,135 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/formats/file_error.h"
 
 namespace skincal {
 namespace {
 
+constexpr std::size_t kColumns = 100;
+
+std::size_t columnsOf(std::string_view utf8) {
+    return static_cast<std::size_t>(
+        std::count_if(utf8.begin(), utf8.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+/// `lead` and `text`, broken between words; further lines begin below the first word.
+std::string wrapped(const std::string& lead, const std::string& text) {
+    const std::size_t indent = columnsOf(lead);
+    std::string lines = lead;
+    std::size_t column = indent;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find(' ', begin), text.size());
+        const std::string word = text.substr(begin, end - begin);
+        begin = end + 1;
+        if (word.empty())
+            continue;
+        if (column > indent && column + 1 + columnsOf(word) > kColumns) {
+            lines += "\n" + std::string(indent, ' ');
+            column = indent;
+        }
+        lines += (column > indent ? " " : "") + word;
+        column += (column > indent ? 1 : 0) + columnsOf(word);
+    }
+    return lines + "\n";
+}
+
 std::string orDash(const std::optional<double>& value, double factor, int digits, const char* unit) {
     return value ? fmt::format("{:.{}f} {}", *value * factor, digits, unit) : "-";
 }
 
-std::size_t placedIn(const BodyModel& body, PatchId patch) {
-    return static_cast<std::size_t>(std::count_if(body.modules.begin(), body.modules.end(), [&](const BodyModule& m) {
-        return m.patch == patch && m.T_body_module.has_value();
-    }));
+std::string counted(std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-}  // namespace
+std::string duration(double seconds) {
+    return fmt::format("{:.{}f} s", seconds, seconds < 0.1 ? 2 : seconds < 10 ? 1 : 0);
+}
 
-std::string qualityTable(const BodyModel& body) {
-    const BodyQuality& q = body.quality;
-    std::string text;
-    text += fmt::format("{:>5}  {:>6}  {:>7}  {:>6}  {:>5}  status\n", "patch", "origin", "modules", "placed", "views");
+std::string timeTaken(const std::vector<StageReport>& all) {
+    const std::vector<StageReport> stages = sumByStage(all);
+    const StageReport sum = total(stages);
+    std::string text = duration(sum.seconds);
+    std::string parts;
+    for (const StageReport& stage : stages)
+        parts += (parts.empty() ? "" : ", ") + stage.stage + " " + duration(stage.seconds);
+    if (stages.size() > 1)
+        text += " (" + parts + ")";
+    if (sum.iterations > 0)
+        text += ", " + counted(static_cast<std::size_t>(sum.iterations), "iteration");
+    return text;
+}
+
+std::string patchRows(const BodyModel& body) {
     constexpr std::size_t kMaxRows = 30;
+    std::map<PatchId, std::size_t> placed;
+    for (const BodyModule& module : body.modules) {
+        if (module.patch && module.T_body_module)
+            ++placed[*module.patch];
+    }
+    std::string text =
+        fmt::format("{:>5}  {:>6}  {:>7}  {:>6}  {:>5}  status\n", "patch", "origin", "modules", "placed", "views");
     for (std::size_t k = 0; k < std::min(kMaxRows, body.patches.size()); ++k) {
         const BodyPatch& patch = body.patches[k];
-        text +=
-            fmt::format("{:>5}  {:>6}  {:>7}  {:>6}  {:>5}  {}\n", patch.id.value, patch.origin.value,
-                        patch.modules.size(), placedIn(body, patch.id), patch.views.size(), printable(patch.status));
+        text += wrapped(fmt::format("{:>5}  {:>6}  {:>7}  {:>6}  {:>5}  ", patch.id.value, patch.origin.value,
+                                    patch.modules.size(), placed[patch.id], patch.views.size()),
+                        printable(patch.status));
     }
     if (body.patches.size() > kMaxRows)
         text += fmt::format("  … and {} patches more\n", body.patches.size() - kMaxRows);
+    return text;
+}
+
+std::string figures(const BodyModel& body) {
+    const BodyQuality& q = body.quality;
     const auto cables = std::count_if(body.links.begin(), body.links.end(),
                                       [](const BodyLink& l) { return l.kind == LinkKind::Cable; });
     const auto views = std::count_if(body.views.begin(), body.views.end(),
                                      [](const BodyView& v) { return v.T_body_camera.has_value(); });
-    text += fmt::format("\nmodules placed     {} of {}\n", q.modulesPlaced, q.modulesTotal);
-    text += fmt::format("views placed       {} of {}\n", views, body.views.size());
-    text += fmt::format("links              {}, {} of them cables\n", body.links.size(), cables);
-    text += fmt::format("pixel residual     {} rms\n", orDash(q.residual_rms_px, 1, 3, "px"));
-    text += fmt::format("link mismatch      {} rms, {} max\n", orDash(q.link_mismatch_rms, 1e3, 2, "mm"),
-                        orDash(q.link_mismatch_max, 1e3, 2, "mm"));
-    text += fmt::format("gravity residual   {} rms\n", orDash(q.gravity_residual_rms, 1, 3, "m/s²"));
-    text += fmt::format("method             {}\n", body.generator.method);
-    text += fmt::format("verdict            {}\n", name(q.trust));
-    for (const std::string& missing : q.missing)
-        text += fmt::format("missing: {}\n", printable(missing));
-    for (const std::string& warning : q.warnings)
-        text += fmt::format("warning: {}\n", printable(warning));
+    const auto row = [](const char* what, const std::string& value) {
+        return wrapped(fmt::format("{:<19}", what), value);
+    };
+    std::string text = row("modules placed", fmt::format("{} of {}", q.modulesPlaced, q.modulesTotal));
+    if (const std::size_t unseen = restingOnLinksAndGravity(body); unseen > 0)
+        text += row("", "resting on links and gravity alone: " + counted(unseen, "module"));
+    text += row("views placed", fmt::format("{} of {}", views, body.views.size()));
+    text += row("links", fmt::format("{}, {} of them cables", body.links.size(), cables));
+    text += row("pixel residual", orDash(q.residual_rms_px, 1, 3, "px") + " rms");
+    text += row("link mismatch", fmt::format("{} rms, {} max", orDash(q.link_mismatch_rms, 1e3, 2, "mm"),
+                                             orDash(q.link_mismatch_max, 1e3, 2, "mm")));
+    text += row("gravity residual", orDash(q.gravity_residual_rms, 1, 3, "m/s²") + " rms");
+    text += row("method", body.generator.method);
+    if (!q.stages.empty())
+        text += row("time", timeTaken(q.stages));
+    text += row("verdict", std::string(name(q.trust)));
     return text;
 }
 
-nlohmann::ordered_json qualityJson(const BodyModel& body) {
-    const auto number = [](const std::optional<double>& value) {
-        return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-    };
+}  // namespace
+
+std::string qualityTable(const BodyModel& body, const std::vector<TableRow>& more) {
     const BodyQuality& q = body.quality;
-    nlohmann::ordered_json json;
-    json["method"] = body.generator.method;
-    json["verdict"] = name(q.trust);
-    json["modules_placed"] = q.modulesPlaced;
-    json["modules_total"] = q.modulesTotal;
-    json["residual_rms_px"] = number(q.residual_rms_px);
-    json["link_mismatch_rms"] = number(q.link_mismatch_rms);
-    json["link_mismatch_max"] = number(q.link_mismatch_max);
-    json["gravity_residual_rms"] = number(q.gravity_residual_rms);
-    json["condition"] = q.condition;
-    json["warnings"] = q.warnings;
-    json["missing"] = q.missing;
-    json["patches"] = nlohmann::ordered_json::array();
-    for (const BodyPatch& patch : body.patches) {
-        nlohmann::ordered_json entry;
-        entry["id"] = patch.id.value;
-        entry["modules"] = patch.modules.size();
-        entry["placed"] = placedIn(body, patch.id);
-        entry["views"] = patch.views.size();
-        entry["status"] = patch.status;
-        json["patches"].push_back(std::move(entry));
-    }
-    return json;
+    std::string text = patchRows(body) + "\n" + figures(body);
+    for (const auto& [what, value] : more)
+        text += fmt::format("{:<18} {}\n", what, printable(value));
+
+    std::set<std::string> told;
+    const auto once = [&](const char* lead, const std::string& sentence) {
+        return told.insert(sentence).second ? wrapped(lead, printable(sentence)) : "";
+    };
+    std::string findings;
+    for (const Finding& finding : q.findings)
+        findings += once("  - ", finding.text);
+    if (!findings.empty())
+        text += "\nwhat disagrees with the rest:\n" + findings;
+    std::string rest;
+    for (const std::string& missing : q.missing)
+        rest += once("missing: ", missing);
+    for (const std::string& warning : q.warnings)
+        rest += once("warning: ", warning);
+    return rest.empty() ? text : text + "\n" + rest;
 }
 
 }  // namespace skincal

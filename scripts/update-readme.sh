@@ -20,7 +20,7 @@ outcome() {
 }
 
 {
-  echo "| recording | \`--method paper\` | default | \`--method joint\` |"
+  echo "| recording | \`--method paper\` | \`--method sturdy\` | default |"
   echo "| --- | --- | --- | --- |"
   for recording in tests/data/recordings/*.skinrec; do
     name=$(basename "$recording" .skinrec)

@@ -14,7 +14,7 @@ namespace {
 struct CalibrateArguments {
     std::filesystem::path recording;
     std::filesystem::path output;
-    std::string method{name(Method::Sturdy)};
+    std::string method{name(CalibrateOptions{}.method)};
     bool json = false;
 };
 
@@ -54,7 +54,7 @@ int runCalibrate(const CalibrateArguments& arguments) {
         json["output"] = output.string();
         printJson(json);
     } else {
-        fmt::print("{}\nbody model         {}\n", qualityTable(*body), printable(output.string()));
+        fmt::print("{}", qualityTable(*body, {{"body model", output.string()}}));
     }
     return exitCodeOf(*body);
 }
@@ -68,12 +68,13 @@ void addCalibrateCommand(CommandLine& line) {
     command->add_option("-o,--output", arguments->output,
                         "Where the body model goes; the recording's name with .body.json, here, unless given");
     command
-        ->add_option(
-            "--method", arguments->method,
-            "sturdy: planar-safe poses, loops closed, outliers rejected; joint: that, then everything weighed by "
-            "what the residuals show, with covariances; paper: the method of the IROS 2014 paper to the "
-            "letter, as a baseline")
-        ->check(CLI::IsMember({"sturdy", "joint", "paper"}))
+        ->add_option("--method", arguments->method,
+                     "joint: everything at once, weighed by what the residuals show,\n"
+                     "  with covariances; what disagrees is taken out and named\n"
+                     "sturdy: where joint starts: planar-safe poses, loops closed,\n"
+                     "  outliers rejected\n"
+                     "paper: the method of the IROS 2014 paper to the letter, as a baseline")
+        ->check(CLI::IsMember({"joint", "sturdy", "paper"}))
         ->capture_default_str();
     command->add_flag("--json", arguments->json, "Print the quality figures as JSON");
     command->footer(

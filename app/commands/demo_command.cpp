@@ -62,12 +62,13 @@ void printResult(const DemoArguments& arguments, const BodyModel& body,
         printJson(json);
         return;
     }
-    fmt::print("{}", qualityTable(body));
+    std::vector<TableRow> rows;
     if (difference)
-        fmt::print("against the truth  {:.2f} mm and {:.2f}° rms\n", difference->positionRms * 1e3,
-                   difference->rotationRms / kDegree);
-    fmt::print("body model         {}\n", printable((arguments.output / kBodyFile).string()));
-    fmt::print("picture            {}\n", printable((arguments.output / kPictureFile).string()));
+        rows.emplace_back("against the truth", fmt::format("{:.2f} mm and {:.2f}° rms", difference->positionRms * 1e3,
+                                                           difference->rotationRms / kDegree));
+    rows.emplace_back("body model", (arguments.output / kBodyFile).string());
+    rows.emplace_back("picture", (arguments.output / kPictureFile).string());
+    fmt::print("{}", qualityTable(body, rows));
 }
 
 int runDemo(const DemoArguments& arguments) {

@@ -251,17 +251,6 @@ void judge(BodyModel& body, Trust trustAtMost) {
 
 }  // namespace
 
-std::string_view name(Trust trust) {
-    switch (trust) {
-        case Trust::Good:
-            return "good";
-        case Trust::Usable:
-            return "usable";
-        default:
-            return "not to be trusted";
-    }
-}
-
 BodyModel assembleBody(const Measurements& measurements, const GravityTable& gravity, const SkinLayout& layout,
                        const AdjustmentInput& input, const BodyEstimate& estimate) {
     BodyModel body;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -78,6 +79,15 @@ struct Finding {
     std::optional<int> pose{};
     std::string text;  ///< plain English, with the numbers that decided
 };
+
+/// "moved module" and so on, in files as in print.
+[[nodiscard]] std::string_view name(Finding::Kind kind);
+
+/// All of them; name() gives each a word of its own.
+inline constexpr std::array kFindingKinds{Finding::Kind::WrongLink,  Finding::Kind::MovedModule,
+                                          Finding::Kind::MovedPatch, Finding::Kind::WrongTemplate,
+                                          Finding::Kind::ShakenPose, Finding::Kind::NoisyAccelerometer,
+                                          Finding::Kind::BumpedView, Finding::Kind::UnsteadyView};
 
 /// What a stage of the computation took. Not part of the file: it differs from run to run.
 struct StageReport {

@@ -83,6 +83,10 @@ void placePatchFrames(BodySolution& solution, const BodyState& state) {
     for (std::size_t k = 0; k < solution.layout.patches.size(); ++k) {
         const Patch& patch = solution.layout.patches[k];
         solution.estimate.T_r_o[k] = state.T_r_u[patch.origin];
+        const bool anyPlaced = std::any_of(patch.modules.begin(), patch.modules.end(),
+                                           [&](std::size_t u) { return state.T_r_u[u].has_value(); });
+        if (!anyPlaced && solution.estimate.patchStatus[k] == "placed")
+            solution.estimate.patchStatus[k] = "none of its modules is placed";
         if (!solution.estimate.T_r_o[k])
             continue;
         for (std::size_t i = 0; i < patch.modules.size(); ++i) {

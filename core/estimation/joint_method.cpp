@@ -60,6 +60,12 @@ tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measu
     return solution;
 }
 
+/// What was computed before counts in the time that the result took.
+void addStagesBefore(std::vector<StageReport> before, BodySolution& solution) {
+    auto& stages = solution.estimate.stages;
+    stages.insert(stages.begin(), std::make_move_iterator(before.begin()), std::make_move_iterator(before.end()));
+}
+
 /// Links that turn out to be cables: again without them, their patches fall apart.
 tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements& measurements,
                                                               const GravityTable& gravity, SolutionHistory& history,
@@ -70,7 +76,10 @@ tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements
     std::vector<std::string> known;
     for (int round = 0; solution && history.refuted != known && round < kMostRounds; ++round) {
         known = history.refuted;
+        auto stages = std::move(solution->estimate.stages);
         solution = solveOnce(measurements, gravity, history, options, context);
+        if (solution)
+            addStagesBefore(std::move(stages), *solution);
     }
     return solution;
 }
@@ -101,8 +110,12 @@ tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& me
             if (!next && next.error().code == ErrorCode::Cancelled)
                 return next;
             better = next && explainsMore(*next, *best);
-            if (!better)
+            if (!better) {
+                if (next)
+                    addStagesBefore(std::move(next->estimate.stages), *best);
                 continue;
+            }
+            addStagesBefore(std::move(best->estimate.stages), *next);
             best = std::move(next);
             history = std::move(own);
             break;

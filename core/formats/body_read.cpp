@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numbers>
 #include <set>
-#include <unordered_map>
 
 #include "core/formats/body_json.h"
+#include "core/formats/body_references.h"
 #include "core/formats/files.h"
 #include "core/formats/json_cursor.h"
 #include "core/formats/recording_parse.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr std::int64_t kMaxId = 0xFFFFFFFFLL;
 constexpr std::size_t kMaxTexts = 1'000'000;
+constexpr std::int64_t kMaxPose = 1'000'000;
 
 ModuleId readId(const JsonCursor& cursor) {
     return ModuleId(static_cast<std::uint32_t>(cursor.integer(1, kMaxId)));
@@ -81,13 +83,28 @@ std::map<std::string, std::string> readTextMap(const JsonCursor& cursor, std::st
 }
 
 template <std::size_t N>
-std::size_t readWord(const JsonCursor& cursor, const std::array<const char*, N>& words) {
+std::size_t readWord(const JsonCursor& cursor, const std::array<std::string_view, N>& words) {
     const std::string text = cursor.text();
     for (std::size_t i = 0; i < N; ++i) {
         if (text == words.at(i))
             return i;
     }
     cursor.fail(fmt::format("expected one of \"{}\", found \"{}\"", fmt::join(words, "\", \""), text));
+}
+
+Vector3d readRotationVector(const JsonCursor& cursor) {
+    const Vector3d w = cursor.vector3();
+    if (w.norm() > std::numbers::pi)
+        cursor.fail(fmt::format("expected a rotation vector in rad, at most pi long, it is {:g} long", w.norm()));
+    return w;
+}
+
+AccelerometerCalibration readAccelerometer(const JsonCursor& cursor) {
+    AccelerometerCalibration calibration;
+    calibration.bias = cursor.at("bias").vector3();
+    calibration.scale = cursor.at("scale").vector3();
+    calibration.misalignment = optionalAt(cursor, "misalignment", readRotationVector).value_or(Vector3d::Zero());
+    return calibration;
 }
 
 BodyModule readModule(const JsonCursor& cursor) {
@@ -99,10 +116,13 @@ BodyModule readModule(const JsonCursor& cursor) {
     module.T_patch_module = optionalAt(cursor, "T_patch_module", readPose);
     module.T_body_module = optionalAt(cursor, "T_body_module", readPose);
     module.covariance = optionalAt(cursor, "covariance", readCovariance);
-    module.accelerometer = optionalAt(cursor, "accelerometer", [](const JsonCursor& c) {
-        return AccelerometerCalibration{c.at("bias").vector3(), c.at("scale").vector3()};
-    });
+    module.accelerometer = optionalAt(cursor, "accelerometer", readAccelerometer);
     module.status = cursor.at("status").text();
+    if (cursor.holds("support")) {
+        module.seen = readWord<2>(cursor.at("support"), {"pictures", "links and gravity"}) == 0;
+        if (!module.T_body_module)
+            cursor.at("support").fail("expected null: the module has no T_body_module");
+    }
     return module;
 }
 
@@ -149,6 +169,27 @@ BodyView readView(const JsonCursor& cursor) {
     return view;
 }
 
+Finding::Kind readKind(const JsonCursor& cursor) {
+    std::array<std::string_view, kFindingKinds.size()> words{};
+    std::transform(kFindingKinds.begin(), kFindingKinds.end(), words.begin(),
+                   [](Finding::Kind kind) { return name(kind); });
+    return kFindingKinds.at(readWord(cursor, words));
+}
+
+Finding readFinding(const JsonCursor& cursor) {
+    Finding finding;
+    finding.kind = readKind(cursor.at("kind"));
+    if (cursor.holds("modules")) {
+        for (const JsonCursor& item : cursor.at("modules").array(kMaxModules))
+            finding.modules.push_back(readId(item));
+    }
+    finding.view = optionalAt(cursor, "view", [](const JsonCursor& c) { return c.text(); });
+    finding.pose =
+        optionalAt(cursor, "pose", [](const JsonCursor& c) { return static_cast<int>(c.integer(0, kMaxPose)); });
+    finding.text = cursor.at("text").text();
+    return finding;
+}
+
 BodyQuality readQuality(const JsonCursor& cursor) {
     BodyQuality q;
     q.residual_rms_px = optionalAt(cursor, "residual_rms_px", readNumber);
@@ -163,64 +204,29 @@ BodyQuality readQuality(const JsonCursor& cursor) {
         q.warnings = readTexts(cursor.at("warnings"));
     if (cursor.holds("missing"))
         q.missing = readTexts(cursor.at("missing"));
+    if (cursor.holds("findings")) {
+        for (const JsonCursor& item : cursor.at("findings").array(kMaxTexts))
+            q.findings.push_back(readFinding(item));
+    }
     if (cursor.holds("verdict"))
         q.trust = static_cast<Trust>(readWord<3>(cursor.at("verdict"), {"good", "usable", "not to be trusted"}));
     return q;
 }
 
-/// Names and ids are taken once, and what is referred to is there: whoever uses a body may look things up blindly.
-void checkReferences(const JsonCursor& root, const BodyModel& body) {
-    const auto entry = [&](const char* key, std::size_t i) { return root.at(key).array(kMaxLinks)[i]; };
-    std::map<std::string, const ModuleTemplate*> types;
-    for (std::size_t t = 0; t < body.templates.size(); ++t) {
-        if (!types.emplace(body.templates[t].name, &body.templates[t]).second)
-            entry("module_types", t).at("name").fail("expected a name of its own, it is taken");
+/// Files from before the key: what a picture shows that counts rests on pictures.
+void completeSupport(const JsonCursor& modules, BodyModel& body) {
+    std::set<ModuleId> shown;
+    for (const BodyView& view : body.views) {
+        for (const BodyObservation& o : view.observations) {
+            if (o.verdict == ObservationVerdict::Used)
+                shown.insert(o.module);
+        }
     }
-    std::set<PatchId> patches;
-    for (std::size_t p = 0; p < body.patches.size(); ++p) {
-        if (!patches.insert(body.patches[p].id).second)
-            entry("patches", p).at("id").fail("expected an id of its own, it is taken");
-    }
-    std::unordered_map<ModuleId, const ModuleTemplate*> modules;
+    const std::vector<JsonCursor> cursors = modules.array(kMaxModules);
     for (std::size_t m = 0; m < body.modules.size(); ++m) {
-        const BodyModule& module = body.modules[m];
-        const auto type = types.find(module.type);
-        if (type == types.end())
-            entry("modules", m).at("type").fail("expected a name from module_types, found '" + module.type + "'");
-        if (!modules.emplace(module.id, type->second).second)
-            entry("modules", m).at("id").fail(fmt::format("expected an id of its own, {} is taken", module.id.value));
-        if (module.patch && patches.count(*module.patch) == 0)
-            entry("modules", m)
-                .at("patch")
-                .fail(fmt::format("expected the id of a patch, {} is none", module.patch->value));
-    }
-    const auto need = [&](ModuleId id, const JsonCursor& cursor) {
-        if (modules.count(id) == 0)
-            cursor.fail(fmt::format("expected the ids of modules, {} is none", id.value));
-    };
-    const std::vector<JsonCursor> patchCursors = root.at("patches").array(kMaxModules);
-    for (std::size_t p = 0; p < body.patches.size(); ++p) {
-        need(body.patches[p].origin, patchCursors[p].at("origin"));
-        for (const ModuleId id : body.patches[p].modules)
-            need(id, patchCursors[p].at("modules"));
-    }
-    const auto needPort = [&](ModuleId id, int port, const JsonCursor& cursor) {
-        if (static_cast<std::size_t>(port) >= modules.at(id)->ports.size())
-            cursor.fail(fmt::format("expected a port below {} of '{}', found {}", modules.at(id)->ports.size(),
-                                    modules.at(id)->name, port));
-    };
-    const std::vector<JsonCursor> links = root.at("links").array(kMaxLinks);
-    for (std::size_t l = 0; l < body.links.size(); ++l) {
-        const Link& link = body.links[l].link;
-        need(link.a, links[l].at("a"));
-        need(link.b, links[l].at("b"));
-        needPort(link.a, link.a_port, links[l].at("a_port"));
-        needPort(link.b, link.b_port, links[l].at("b_port"));
-    }
-    const std::vector<JsonCursor> views = root.at("views").array(kMaxViews);
-    for (std::size_t v = 0; v < body.views.size(); ++v) {
-        for (const BodyObservation& observation : body.views[v].observations)
-            need(observation.module, views[v].at("observations"));
+        BodyModule& module = body.modules[m];
+        if (module.T_body_module && !cursors[m].holds("support"))
+            module.seen = shown.contains(module.id);
     }
 }
 
@@ -254,11 +260,12 @@ tl::expected<BodyModel, FileError> parseBodyJson(std::string_view text, const st
             body.links.push_back(readLink(item));
         for (const JsonCursor& item : root.at("views").array(kMaxViews))
             body.views.push_back(readView(item));
+        completeSupport(root.at("modules"), body);
         body.quality = readQuality(root.at("quality"));
         body.quality.modulesTotal = body.modules.size();
         body.quality.modulesPlaced = static_cast<std::size_t>(std::count_if(
             body.modules.begin(), body.modules.end(), [](const BodyModule& m) { return m.T_body_module.has_value(); }));
-        checkReferences(root, body);
+        checkBodyReferences(root, body);
         return body;
     } catch (const FileErrorException& exception) {
         return tl::unexpected(exception.error);

@@ -22,6 +22,13 @@ Json numbers(const Vector& v) {
     return json;
 }
 
+Json idsOf(const std::vector<ModuleId>& modules) {
+    Json json = Json::array();
+    for (const ModuleId id : modules)
+        json.push_back(id.value);
+    return json;
+}
+
 Json toJson(const std::optional<Isometry3d>& T) {
     if (!T)
         return {};
@@ -51,8 +58,13 @@ Json toJson(const BodyModule& module) {
     if (module.accelerometer) {
         json["accelerometer"]["bias"] = numbers(module.accelerometer->bias);
         json["accelerometer"]["scale"] = numbers(module.accelerometer->scale);
+        if (!module.accelerometer->misalignment.isZero(0))
+            json["accelerometer"]["misalignment"] = numbers(module.accelerometer->misalignment);
     }
     json["status"] = module.status;
+    json["support"] = nullptr;
+    if (module.T_body_module)
+        json["support"] = module.seen ? "pictures" : "links and gravity";
     return json;
 }
 
@@ -60,9 +72,7 @@ Json toJson(const BodyPatch& patch) {
     Json json;
     json["id"] = patch.id.value;
     json["origin"] = patch.origin.value;
-    json["modules"] = Json::array();
-    for (const ModuleId id : patch.modules)
-        json["modules"].push_back(id.value);
+    json["modules"] = idsOf(patch.modules);
     json["T_body_patch"] = toJson(patch.T_body_patch);
     json["views"] = patch.views;
     json["status"] = patch.status;
@@ -104,6 +114,24 @@ Json toJson(const BodyView& view) {
     return json;
 }
 
+Json toJson(const Finding& finding) {
+    Json json;
+    json["kind"] = name(finding.kind);
+    json["modules"] = idsOf(finding.modules);
+    json["view"] = orNull(finding.view);
+    json["pose"] = orNull(finding.pose);
+    json["text"] = finding.text;
+    return json;
+}
+
+template <class Items>
+Json arrayOf(const Items& items) {
+    Json json = Json::array();
+    for (const auto& item : items)
+        json.push_back(toJson(item));
+    return json;
+}
+
 Json toJson(const BodyQuality& q) {
     Json json;
     json["modules_placed"] = q.modulesPlaced;
@@ -117,15 +145,8 @@ Json toJson(const BodyQuality& q) {
         json["condition"][key] = value;
     json["warnings"] = q.warnings;
     json["missing"] = q.missing;
+    json["findings"] = arrayOf(q.findings);
     json["verdict"] = name(q.trust);
-    return json;
-}
-
-template <class Items>
-Json arrayOf(const Items& items) {
-    Json json = Json::array();
-    for (const auto& item : items)
-        json.push_back(toJson(item));
     return json;
 }
 

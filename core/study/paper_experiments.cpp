@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/estimation/joint_method.h"
 #include "core/estimation/paper_method.h"
-#include "core/estimation/sturdy_method.h"
 #include "core/simulation/renderer.h"
 #include "core/study/study_world.h"
 #include "core/vision/decoder.h"
@@ -76,7 +76,7 @@ ExperimentRow run(const Experiment& experiment, const PaperStudyOptions& options
         const World world = experiment.makeWorld(static_cast<std::uint64_t>(trial) + 1);
         const Measurements measurements = measurementsOf(world);
         for (const bool ourTurn : {false, true}) {
-            const auto body = ourTurn ? calibrateSturdy(measurements) : calibratePaper(measurements);
+            const auto body = ourTurn ? calibrateJoint(measurements) : calibratePaper(measurements);
             const auto poses = body ? posesOf(*body, experiment.needViews) : std::nullopt;
             if (poses)
                 (ourTurn ? ours : paper).add(experiment.read(world, poses->T_r_v, poses->T_r_u), experiment.truth);

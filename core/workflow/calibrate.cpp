@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/estimation/stage_clock.h"
+
 namespace skincal {
 namespace {
 
@@ -89,14 +91,24 @@ tl::expected<Measurements, CalibrateError> measure(const Recording& recording, c
 
 tl::expected<BodyModel, CalibrateError> calibrate(const Recording& recording, const RecordingFrameLoader& load,
                                                   const CalibrateOptions& options, const RunContext& context) {
+    const StageClock reading("reading frames");
     const auto measurements = measure(recording, load, options, context);
     if (!measurements)
         return tl::unexpected(measurements.error());
+    const StageReport read = reading.stop();
+    const StageClock estimating("estimate");
     auto body = options.method == Method::Paper   ? calibratePaper(*measurements, options.paper, context)
                 : options.method == Method::Joint ? calibrateJoint(*measurements, options.joint, context)
                                                   : calibrateSturdy(*measurements, options.sturdy, context);
     if (!body)
         return tl::unexpected(CalibrateError{body.error().message(), false, body.error().code == ErrorCode::Cancelled});
+    auto& stages = body->quality.stages;
+    if (stages.empty())
+        stages.push_back(estimating.stop());
+    const bool anyFrames = std::any_of(recording.views.begin(), recording.views.end(),
+                                       [](const RecordedView& view) { return !view.frames.empty(); });
+    if (anyFrames)
+        stages.insert(stages.begin(), read);
     body->generator.version = SKINCAL_VERSION;
     body->generator.options["method"] = std::string(name(options.method));
     return *body;

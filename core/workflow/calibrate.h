@@ -18,15 +18,15 @@ namespace skincal {
 
 enum class Method {
     Paper,   ///< the paper to the letter: the baseline
-    Sturdy,  ///< without its weaknesses: the default
-    Joint,   ///< everything at once, weighed by what the residuals show, with covariances
+    Sturdy,  ///< without its weaknesses: where Joint starts from
+    Joint,   ///< everything at once, weighed by what the residuals show, with covariances: the default
 };
 
 [[nodiscard]] std::string_view name(Method method);
 [[nodiscard]] std::optional<Method> methodFromName(std::string_view text);
 
 struct CalibrateOptions {
-    Method method = Method::Sturdy;
+    Method method = Method::Joint;
     PaperMethodOptions paper;
     PaperDetectorOptions paperDetector;
     SturdyMethodOptions sturdy;

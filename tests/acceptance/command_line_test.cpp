@@ -1,46 +1,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <vtkPLYReader.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "core/formats/body_json.h"
 #include "core/formats/image_header.h"
+#include "tests/acceptance/program.h"
 #include "tests/unit/formats/temporary_directory.h"
 
 namespace skincal {
 namespace {
 
-struct Outcome {
-    int code = -1;
-    std::string output;  ///< standard output
-    std::string error;   ///< standard error
-};
-
-/// @param environment  set for the program alone, "DISPLAY=:0".
-Outcome run(const std::string& arguments, const std::string& environment = {}) {
-    const test::TemporaryDirectory directory;
-    const std::string errorFile = (directory / "stderr").string();
-    Outcome outcome;
-    const std::string command = "env " + environment + " " + SKINCAL_PROGRAM + " " + arguments + " 2>" + errorFile;
-    FILE* pipe = ::popen(command.c_str(), "r");
-    std::array<char, 4096> buffer{};
-    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-        outcome.output.append(buffer.data(), n);
-    const int status = ::pclose(pipe);
-    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    outcome.error = test::readText(errorFile);
-    return outcome;
-}
-
+using test::Outcome;
+using test::run;
 using testing::HasSubstr;
 
 class CommandLineTest : public testing::Test {
@@ -71,7 +49,7 @@ TEST_F(CommandLineTest, FromSimulationToEveryExport) {
     EXPECT_THAT(calibrated.output, HasSubstr("modules placed     36 of 36"));
     const auto body = readBody(at("b.body.json"));
     ASSERT_TRUE(body);
-    EXPECT_EQ(body->generator.method, "sturdy");
+    EXPECT_EQ(body->generator.method, "joint");
     EXPECT_EQ(body->generator.recording_sha256.size(), 3U);
 
     const Outcome compared = run("compare --json " + at("b.body.json") + " " + at("truth.json"));
@@ -148,7 +126,7 @@ TEST_F(CommandLineTest, DataThatDoNotSufficeGiveOneAndWhatIsMissing) {
 TEST_F(CommandLineTest, NoModulesAreNotEnough) {
     for (const auto& [name, modules] : {std::pair("none", "[]"), {"two", R"([{"id": 1, "type": "hex"}])"}}) {
         writeSmallRecording(name, modules);
-        for (const char* method : {"paper", "sturdy"}) {
+        for (const char* method : {"paper", "sturdy", "joint"}) {
             const Outcome outcome = run("calibrate " + at(name) + " -o " + at("b.json") + " --method " + method);
             EXPECT_EQ(outcome.code, 1) << name << method << outcome.output << outcome.error;
         }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/estimation/compare.h"
+#include "core/formats/body_json.h"
 #include "core/formats/truth_json.h"
 #include "core/workflow/calibrate.h"
 
@@ -28,7 +29,7 @@ struct Solved {
     }
 };
 
-Solved solve(const std::filesystem::path& directory, Method method) {
+Solved solve(const std::filesystem::path& directory, Method method = CalibrateOptions{}.method) {
     const auto recording = readRecording(directory);
     const auto truth = readTruth(directory / "truth.json");
     if (!recording || !truth)
@@ -53,7 +54,7 @@ std::filesystem::path recordingNamed(const std::string& name) {
 class RecordingsOfOthersTable : public testing::TestWithParam<std::string> {};
 
 TEST_P(RecordingsOfOthersTable, AreSolvedThreeTimesBetterThanByThePaper) {
-    const Solved ours = solve(recordingNamed(GetParam()), Method::Sturdy);
+    const Solved ours = solve(recordingNamed(GetParam()));
     const Solved paper = solve(recordingNamed(GetParam()), Method::Paper);
     EXPECT_EQ(ours.body.quality.modulesPlaced, ours.body.quality.modulesTotal);
     ASSERT_TRUE(ours.difference);
@@ -77,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, RecordingsOfOthersTable,
 
 TEST(RecordingsOfOthers, FalseDetectionsAreNamedAndNoTrueOneIs) {
     const auto directory = recordingNamed("outliers-detections");
-    const Solved ours = solve(directory, Method::Sturdy);
+    const Solved ours = solve(directory);
     const auto truth = readTruth(directory / "truth.json");
     std::map<std::pair<std::string, ModuleId>, Vector2d> real;
     for (const TruePixel& pixel : truth->pixels)
@@ -92,9 +93,11 @@ TEST(RecordingsOfOthers, FalseDetectionsAreNamedAndNoTrueOneIs) {
 }
 
 TEST(RecordingsOfOthers, CablesAreToldFromNeighbours) {
-    for (const std::string name : {"cylinder-cables-detections", "outliers-detections"}) {
+    for (const auto& [name, method] : {std::pair("cylinder-cables-detections", Method::Joint),
+                                       {"outliers-detections", Method::Joint},
+                                       {"outliers-detections", Method::Sturdy}}) {
         const auto directory = recordingNamed(name);
-        const Solved ours = solve(directory, Method::Sturdy);
+        const Solved ours = solve(directory, method);
         const auto truth = readTruth(directory / "truth.json");
         std::map<ModuleId, int> patch;
         for (const TrueModule& module : truth->modules)
@@ -158,6 +161,7 @@ TEST(RecordingsOfOthers, TheSameRecordingGivesTheSameBody) {
             EXPECT_TRUE(a.body.modules[u].T_body_module->matrix() == b.body.modules[u].T_body_module->matrix());
             EXPECT_EQ(a.body.modules[u].covariance, b.body.modules[u].covariance);
         }
+        EXPECT_EQ(bodyToJson(a.body), bodyToJson(b.body));
     }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/unit/formats/random_body.h"
 #include "tests/unit/formats/temporary_directory.h"
@@ -29,8 +30,13 @@ TEST(BodyJson, RoundTripKeepsEveryField) {
             }
             EXPECT_EQ(b->modules[i].status, a.modules[i].status);
             EXPECT_EQ(b->modules[i].covariance, a.modules[i].covariance);
+            EXPECT_EQ(b->modules[i].seen, a.modules[i].seen);
         }
-        EXPECT_EQ(b->modules[1].accelerometer->bias, a.modules[1].accelerometer->bias);
+        for (const std::size_t i : {1U, 2U}) {
+            EXPECT_EQ(b->modules[i].accelerometer->bias, a.modules[i].accelerometer->bias);
+            EXPECT_EQ(b->modules[i].accelerometer->scale, a.modules[i].accelerometer->scale);
+            EXPECT_EQ(b->modules[i].accelerometer->misalignment, a.modules[i].accelerometer->misalignment);
+        }
         EXPECT_EQ(b->patches[0].modules, a.patches[0].modules);
         EXPECT_FALSE(b->patches[1].T_body_patch);
         EXPECT_EQ(b->links[0].distance, a.links[0].distance);
@@ -40,7 +46,36 @@ TEST(BodyJson, RoundTripKeepsEveryField) {
         EXPECT_EQ(b->quality.trust, Trust::Usable);
         EXPECT_EQ(b->quality.missing, a.quality.missing);
         EXPECT_EQ(b->quality.condition, a.quality.condition);
+        ASSERT_EQ(b->quality.findings.size(), a.quality.findings.size());
+        for (std::size_t i = 0; i < a.quality.findings.size(); ++i) {
+            EXPECT_EQ(b->quality.findings[i].kind, a.quality.findings[i].kind);
+            EXPECT_EQ(b->quality.findings[i].modules, a.quality.findings[i].modules);
+            EXPECT_EQ(b->quality.findings[i].view, a.quality.findings[i].view);
+            EXPECT_EQ(b->quality.findings[i].pose, a.quality.findings[i].pose);
+            EXPECT_EQ(b->quality.findings[i].text, a.quality.findings[i].text);
+        }
     }
+}
+
+TEST(BodyJson, HowLongItTookIsNoPartOfTheFile) {
+    BodyModel body = test::randomBody(1);
+    const std::string text = bodyToJson(body);
+    body.quality.stages.front().seconds += 1;
+    body.quality.stages.push_back({"another", 2, 3});
+    EXPECT_EQ(bodyToJson(body), text);
+}
+
+TEST(BodyJson, EveryKindOfFindingHasAWordOfItsOwn) {
+    std::set<std::string> words;
+    for (const Finding::Kind kind : kFindingKinds) {
+        BodyModel body = test::randomBody(1);
+        body.quality.findings = {{kind, {}, {}, {}, "what"}};
+        const auto back = parseBodyJson(bodyToJson(body), "a");
+        ASSERT_TRUE(back) << back.error().message();
+        EXPECT_EQ(back->quality.findings.at(0).kind, kind);
+        words.insert(std::string(name(kind)));
+    }
+    EXPECT_EQ(words.size(), kFindingKinds.size());
 }
 
 TEST(BodyJson, WritesWhatThePageSays) {
@@ -51,6 +86,41 @@ TEST(BodyJson, WritesWhatThePageSays) {
     EXPECT_EQ(json["modules"][0]["T_body_module"]["quaternion_xyzw"].size(), 4U);
     EXPECT_EQ(json["links"][1]["kind"], "cable");
     EXPECT_EQ(json["views"][0]["observations"][1]["verdict"], "ambiguous");
+    EXPECT_EQ(json["modules"][0]["support"], "pictures");
+    EXPECT_EQ(json["modules"][1]["support"], "links and gravity");
+    EXPECT_TRUE(json["modules"][5]["support"].is_null());
+    EXPECT_EQ(json["modules"][1]["accelerometer"]["misalignment"].size(), 3U);
+    EXPECT_FALSE(json["modules"][2]["accelerometer"].contains("misalignment")) << "only where it is not zero";
+    const auto expected = nlohmann::json::parse(R"([
+        {"kind": "wrong link", "modules": [10, 11], "view": null, "pose": null, "text": "ports that do not meet"},
+        {"kind": "bumped view", "modules": [10], "view": "view0", "pose": null, "text": "by 3 mm"},
+        {"kind": "shaken pose", "modules": [], "view": null, "pose": 7, "text": "it did not rest"}])");
+    EXPECT_EQ(json["quality"]["findings"], expected);
+}
+
+TEST(BodyJson, FilesFromBeforeTheseKeysAreRead) {
+    auto json = nlohmann::json::parse(bodyToJson(test::randomBody(2)));
+    json["quality"].erase("findings");
+    for (auto& module : json["modules"]) {
+        module.erase("support");
+        if (module.contains("accelerometer"))
+            module["accelerometer"].erase("misalignment");
+    }
+    const auto body = parseBodyJson(json.dump(), "x.body.json");
+    ASSERT_TRUE(body) << body.error().message();
+    EXPECT_THAT(body->quality.findings, testing::IsEmpty());
+    EXPECT_TRUE(body->modules[1].accelerometer->misalignment.isZero(0));
+    // What rests on pictures shows in the observations.
+    EXPECT_TRUE(body->modules[0].seen);
+    EXPECT_FALSE(body->modules[1].seen) << "its only observation is ambiguous";
+}
+
+TEST(BodyJson, AFindingNeedsItsKindAndItsText) {
+    auto json = nlohmann::json::parse(bodyToJson(test::randomBody(2)));
+    json["quality"]["findings"] = nlohmann::json::parse(R"([{"kind": "moved patch", "text": "what"}])");
+    const auto body = parseBodyJson(json.dump(), "x.body.json");
+    ASSERT_TRUE(body) << body.error().message();
+    EXPECT_EQ(body->quality.findings.at(0).kind, Finding::Kind::MovedPatch);
 }
 
 TEST(BodyJson, BadFilesGiveTheirPlace) {

@@ -72,8 +72,46 @@ INSTANTIATE_TEST_SUITE_P(
                 {0, 0, -1001},
                 "modules[2].T_body_module.translation",
                 "within 1000 m"},
+        BadBody{"MisalignmentOfTwo",
+                "/modules/1/accelerometer/misalignment",
+                {0, 0},
+                "modules[1].accelerometer.misalignment",
+                "expected 3 numbers"},
+        BadBody{"MisalignmentInDegrees",
+                "/modules/1/accelerometer/misalignment",
+                {0, 0, 4},
+                "modules[1].accelerometer.misalignment",
+                "in rad, at most pi long, it is 4 long"},
+        BadBody{"SupportUnknown", "/modules/0/support", "faith", "modules[0].support",
+                "\"pictures\", \"links and gravity\", found \"faith\""},
+        BadBody{"SupportIsANumber", "/modules/0/support", 1, "modules[0].support", "a string, found 1"},
+        BadBody{"SupportOfWhatIsNotPlaced", "/modules/5/support", "pictures", "modules[5].support", "expected null"},
+        BadBody{"FindingsAreNoArray", "/quality/findings", "none", "quality.findings", "an array"},
+        BadBody{"FindingIsNoObject", "/quality/findings/0", "none", "quality.findings[0]", "an object"},
+        BadBody{"FindingKind", "/quality/findings/0/kind", "odd module", "quality.findings[0].kind",
+                "\"moved module\", \"moved patch\""},
+        BadBody{"FindingKindIsNull", "/quality/findings/0/kind", nullptr, "quality.findings[0].kind", "a string"},
+        BadBody{"FindingModuleUnknown", "/quality/findings/0/modules/1", 9, "quality.findings[0].modules", "9 is none"},
+        BadBody{"FindingModuleIsText", "/quality/findings/0/modules/1", "x", "quality.findings[0].modules[1]",
+                "expected a"},
+        BadBody{"FindingViewUnknown", "/quality/findings/1/view", "view9", "quality.findings[1].view",
+                "'view9' is none"},
+        BadBody{"FindingViewIsANumber", "/quality/findings/1/view", 0, "quality.findings[1].view", "a string, found 0"},
+        BadBody{"FindingPoseNegative", "/quality/findings/2/pose", -1, "quality.findings[2].pose", "from 0"},
+        BadBody{"FindingTextIsANumber", "/quality/findings/2/text", 1, "quality.findings[2].text", "a string, found 1"},
         BadBody{"OptionIsANumber", "/generator/options/method", 7, "generator.options.method", "a string, found 7"}),
     [](const testing::TestParamInfo<BadBody>& bad) { return bad.param.name; });
+
+TEST(BodyJson, FindingsLackNeitherKindNorText) {
+    for (const char* key : {"kind", "text"}) {
+        Json json = Json::parse(bodyToJson(test::randomBody(1)));
+        json["quality"]["findings"][0].erase(key);
+        const auto body = parseBodyJson(json.dump(), "a.body.json");
+        ASSERT_FALSE(body) << key;
+        EXPECT_THAT(body.error().message(), testing::HasSubstr("quality.findings[0]"));
+        EXPECT_THAT(body.error().message(), testing::HasSubstr(key));
+    }
+}
 
 TEST(BodyJson, AnInfiniteConditionStaysInfinite) {
     BodyModel body;

@@ -10,7 +10,7 @@ inline BodyModel randomBody(std::uint64_t seed) {
     Random random(seed, "random body");
     const auto pose = [&] { return makeIsometry(random.rotation(), random.normal3()); };
     BodyModel body;
-    body.generator = {"skincal", "1.2.3", "sturdy", {{"method", "sturdy"}}, {{"gravity.csv", "ab12"}}};
+    body.generator = {"skincal", "1.2.3", "joint", {{"method", "joint"}}, {{"gravity.csv", "ab12"}}};
     body.body_frame = "patch:0";
     body.templates = {paperHexagon(), triangleTemplate()};
     for (std::uint32_t i = 0; i < 6; ++i) {
@@ -25,7 +25,10 @@ inline BodyModel randomBody(std::uint64_t seed) {
         if (i == 0)
             m.covariance = Matrix6d::Random();
         if (i == 1)
+            m.accelerometer = AccelerometerCalibration{random.normal3(), random.normal3(), 0.01 * random.normal3()};
+        if (i == 2)
             m.accelerometer = AccelerometerCalibration{random.normal3(), random.normal3()};
+        m.seen = i == 0;  // as the view's observations below
         body.modules.push_back(m);
     }
     body.patches.push_back({PatchId(0), ModuleId(10), {ModuleId(10), ModuleId(11)}, pose(), {"view0"}, "placed"});
@@ -37,8 +40,21 @@ inline BodyModel randomBody(std::uint64_t seed) {
     view.observations.push_back({ModuleId(10), Vector2d(1, 2), Vector2d(0.1, -0.1), ObservationVerdict::Used, ""});
     view.observations.push_back({ModuleId(11), std::nullopt, std::nullopt, ObservationVerdict::Ambiguous, "two spots"});
     body.views.push_back(view);
-    body.quality = {
-        5, 6, 0.1, 0.001, 0.002, 0.03, {{"pixel noise factor", 1.5}}, {"a warning"}, {"a view"}, Trust::Usable};
+    BodyQuality& quality = body.quality;
+    quality.modulesPlaced = 5;
+    quality.modulesTotal = 6;
+    quality.residual_rms_px = 0.1;
+    quality.link_mismatch_rms = 0.001;
+    quality.link_mismatch_max = 0.002;
+    quality.gravity_residual_rms = 0.03;
+    quality.condition = {{"pixel noise factor", 1.5}};
+    quality.warnings = {"a warning"};
+    quality.missing = {"a view"};
+    quality.findings = {{Finding::Kind::WrongLink, {ModuleId(10), ModuleId(11)}, {}, {}, "ports that do not meet"},
+                        {Finding::Kind::BumpedView, {ModuleId(10)}, "view0", {}, "by 3 mm"},
+                        {Finding::Kind::ShakenPose, {}, {}, 7, "it did not rest"}};
+    quality.stages = {{"initial estimate", random.uniform(0, 1), 0}, {"joint adjustment", random.uniform(0, 1), 12}};
+    quality.trust = Trust::Usable;
     return body;
 }
 

@@ -1,6 +1,7 @@
 #include "core/estimation/body_solution.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -11,10 +12,52 @@
 namespace skincal {
 namespace {
 
+bool isNamed(const BodyEstimate& estimate, Finding::Kind kind, ModuleId id) {
+    return std::any_of(estimate.findings.begin(), estimate.findings.end(), [&](const Finding& f) {
+        return f.kind == kind && std::count(f.modules.begin(), f.modules.end(), id) > 0;
+    });
+}
+
+/// Patches whose gravity is their own; those that moved as a whole have been named.
+void reportOwnGravity(BodySolution& solution) {
+    BodyEstimate& estimate = solution.estimate;
+    for (std::size_t k = 0; solution.input.gravity->poseCount() > 0 && k < solution.layout.patches.size(); ++k) {
+        const Patch& patch = solution.layout.patches[k];
+        if (solution.gravityFrame.R_g_o[k] || !solution.body.T_r_o[k] || patch.modules.size() < 2)
+            continue;
+        estimate.trustAtMost = Trust::Usable;
+        if (!isNamed(estimate, Finding::Kind::MovedPatch, solution.input.skin->modules[patch.modules.front()].id))
+            estimate.warnings.push_back(
+                fmt::format("patch {}: gravity disagrees with the other patches or is too alike in all poses; its "
+                            "rotation rests on the camera alone",
+                            patch.id.value));
+    }
+}
+
+void reportNoisyAccelerometers(BodySolution& solution) {
+    BodyEstimate& estimate = solution.estimate;
+    for (const NoisyAccelerometer& noisy : solution.shapes.noisy) {
+        const ModuleId id = solution.input.skin->modules[noisy.module].id;
+        if (!isNamed(estimate, Finding::Kind::NoisyAccelerometer, id))
+            estimate.warnings.push_back(
+                fmt::format("module {}: its accelerometer is off by {:.2f} m/s² rms, the others by {:.2f}", id.value,
+                            noisy.sigma, solution.shapes.accelerometerSigma));
+    }
+}
+
 void reportMissing(BodySolution& solution, const Measurements& measurements, const BodyState& state,
                    const PatchPoseOptions& pose) {
     BodyEstimate& estimate = solution.estimate;
     const Skin& skin = measurements.skin;
+    std::vector<std::string> takenOut;
+    for (std::size_t u = 0; u < estimate.moduleTrouble.size(); ++u) {
+        if (!estimate.moduleTrouble[u].empty())
+            takenOut.push_back(std::to_string(skin.modules[u].id.value));
+    }
+    if (!takenOut.empty())
+        estimate.missing.push_back(fmt::format(
+            "modules {} have no pose: they do not fit the rest, see what disagrees; mend or rewire them, or scan again",
+            fmt::join(takenOut, ", ")));
     const bool anyPlaced =
         std::any_of(state.T_r_u.begin(), state.T_r_u.end(), [](const auto& T) { return T.has_value(); });
     for (std::size_t k = 0; k < solution.layout.patches.size(); ++k) {
@@ -41,31 +84,11 @@ void reportMissing(BodySolution& solution, const Measurements& measurements, con
             fmt::format("{} views show a flat patch alone and could be in two places: the likelier was taken",
                         estimate.undecidedViews));
     }
-    const bool anyGravity = solution.input.gravity->poseCount() > 0;
-    for (std::size_t k = 0; anyGravity && k < solution.layout.patches.size(); ++k) {
-        if (!solution.gravityFrame.R_g_o[k] && solution.body.T_r_o[k] &&
-            solution.layout.patches[k].modules.size() > 1) {
-            estimate.trustAtMost = Trust::Usable;
-            estimate.warnings.push_back(
-                fmt::format("patch {}: gravity disagrees with the other patches or is too alike in all poses; its "
-                            "rotation rests on the camera alone",
-                            solution.layout.patches[k].id.value));
-        }
-    }
+    reportOwnGravity(solution);
     for (const Finding& finding : estimate.findings)
         estimate.warnings.push_back(finding.text);
-    for (const NoisyAccelerometer& noisy : solution.shapes.noisy) {
-        const ModuleId id = skin.modules[noisy.module].id;
-        const bool named = std::any_of(estimate.findings.begin(), estimate.findings.end(), [&](const Finding& f) {
-            return f.kind == Finding::Kind::NoisyAccelerometer && f.modules.front() == id;
-        });
-        if (!named)
-            estimate.warnings.push_back(
-                fmt::format("module {}: its accelerometer is off by {:.2f} m/s² rms, the others by {:.2f}", id.value,
-                            noisy.sigma, solution.shapes.accelerometerSigma));
-    }
+    reportNoisyAccelerometers(solution);
 }
-
 /// The views whose pictures have a say in where each patch lies.
 void listPatchViews(BodySolution& solution, const BodyState& state) {
     std::vector<std::set<std::size_t>> views(solution.layout.patches.size());
@@ -103,21 +126,36 @@ bool BodySolution::anyViewPlaced() const {
     return std::any_of(solved.T_r_v.begin(), solved.T_r_v.end(), [](const auto& T) { return T.has_value(); });
 }
 
+void anchorAtFirstView(BodySolution& solution) {
+    BodyState& state = solution.solved;
+    const auto root = std::find_if(state.T_r_v.begin(), state.T_r_v.end(), [](const auto& T) { return T.has_value(); });
+    if (root == state.T_r_v.end())
+        return;
+    solution.gauge.views = {static_cast<std::size_t>(root - state.T_r_v.begin())};
+    const Isometry3d T_v_r = (*root)->inverse();
+    for (auto* poses : {&state.T_r_v, &state.T_r_u}) {
+        for (auto& T : *poses) {
+            if (T)
+                T = T_v_r * *T;
+        }
+    }
+    state.up_r.clear();
+}
+
 void rejectFarDetections(BodySolution& solution, double sigmas) {
     BodyEstimate& estimate = solution.estimate;
     for (std::size_t i = 0; i < solution.input.pixels.size(); ++i) {
         const PixelObservation& o = solution.input.pixels[i];
-        estimate.rejected[i] = !estimate.setAside[i].empty();
-        estimate.rejectedReason[i] = estimate.setAside[i];
         const auto r = pixelResidual(solution.input, solution.solved, o);
-        if (!r || estimate.rejected[i])
-            continue;
         const double sigma = solution.input.sigmaOf(o, solution.weights);
-        if (r->norm() > sigmas * sigma) {
-            estimate.rejected[i] = true;
+        const bool far = r && r->norm() > sigmas * sigma;
+        if (r && !far)
+            estimate.setAside[i].clear();
+        estimate.rejected[i] = far || !estimate.setAside[i].empty();
+        estimate.rejectedReason[i] = estimate.setAside[i];
+        if (far && estimate.setAside[i].empty())
             estimate.rejectedReason[i] =
                 fmt::format("{:.1f} px from where the body has it, {:.0f} sigma", r->norm(), r->norm() / sigma);
-        }
     }
 }
 

@@ -18,8 +18,11 @@ struct BodySolution : InitialEstimate {
     [[nodiscard]] bool anyViewPlaced() const;
 };
 
+/// Moves the body frame to where the first placed view stands, which is held from here on.
+void anchorAtFirstView(BodySolution& solution);
+
 /// Judges every detection by the solution's weights: those farther than so many standard deviations from where the body
-/// has them are rejected, the others count (again), but for those that were set aside.
+/// has them are rejected, the others count (again). Those that were set aside do only where they fit after all.
 void rejectFarDetections(BodySolution& solution, double sigmas);
 
 /// The detections that count, in the form that the adjustment takes.

@@ -112,9 +112,9 @@ tl::expected<std::optional<SolutionReview>, CalibrationError> refineJointly(Body
     StageClock clock("joint adjustment");
     int iterations = 0;
     std::optional<SolutionReview> review;
+    rejectFarDetections(solution, options.rejectionSigmas);
     for (int i = 0; i < options.maxReweightings; ++i) {
         context.report("weighing the measurements", static_cast<double>(i) / options.maxReweightings);
-        rejectFarDetections(solution, options.rejectionSigmas);
         AdjustmentInput used = usedMeasurements(solution);
         const auto took = adjustSolution(solution, used, context);
         if (!took && took.error().code == ErrorCode::TooFewPoints)
@@ -131,7 +131,9 @@ tl::expected<std::optional<SolutionReview>, CalibrationError> refineJointly(Body
         const bool weightsStand = reweight(review->noise, options, solution.weights);
         const bool gravityStands = judgeGravity(*review, options, solution.input);
         const bool viewsStand = judgeViews(used, *review, options, solution);
-        if (weightsStand && gravityStands && viewsStand)
+        const std::vector<bool> before = solution.estimate.rejected;
+        rejectFarDetections(solution, options.rejectionSigmas);
+        if (weightsStand && gravityStands && viewsStand && before == solution.estimate.rejected)
             break;
     }
     solution.estimate.stages.push_back(clock.stop(iterations));

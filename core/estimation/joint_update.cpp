@@ -69,7 +69,8 @@ void replaceDetections(BodySolution& next, const Measurements& measurements) {
 }
 
 /// Views and patches that the new pictures bring within reach.
-void attachWhatIsNew(BodySolution& next, const InitialEstimateOptions& options) {
+/// @return true where a patch is new: it lies where gravity and a few rays have it.
+bool attachWhatIsNew(BodySolution& next, const InitialEstimateOptions& options) {
     next.body.T_r_v = next.solved.T_r_v;
     for (std::size_t k = 0; k < next.layout.patches.size(); ++k) {
         const Patch& patch = next.layout.patches[k];
@@ -86,13 +87,34 @@ void attachWhatIsNew(BodySolution& next, const InitialEstimateOptions& options) 
     const auto sightings = collectSightings(*next.input.skin, next.layout, next.shapes.shapes, next.input.pixels);
     attachRest(next, sightings, options);
     next.solved.T_r_v = next.body.T_r_v;
+    bool newPatch = false;
     for (std::size_t k = 0; k < before.size(); ++k) {
         const Patch& patch = next.layout.patches[k];
+        newPatch = newPatch || (!before[k] && next.body.T_r_o[k]);
         for (std::size_t i = 0; !before[k] && next.body.T_r_o[k] && i < patch.modules.size(); ++i) {
             if (next.shapes.shapes[k].T_o_u[i])
                 next.solved.T_r_u[patch.modules[i]] = *next.body.T_r_o[k] * *next.shapes.shapes[k].T_o_u[i];
         }
     }
+    return newPatch;
+}
+
+/// From pixels off to the weights that the solution has.
+tl::expected<int, CalibrationError> adjustCoarsely(BodySolution& next, const AdjustmentOptions& coarse,
+                                                   const RunContext& context) {
+    const AdjustmentOptions fine = next.weights;
+    next.weights.pixelLoss = coarse.pixelLoss;
+    next.weights.lossBegins = 0;
+    int iterations = 0;
+    for (const double scale_px : {1.0, 0.25, 0.0}) {
+        next.weights.pixelSigmaFloor_px = std::max(scale_px, fine.pixelSigmaFloor_px);
+        const auto took = adjustSolution(next, usedMeasurements(next), context);
+        if (!took)
+            return took;
+        iterations += *took;
+    }
+    next.weights = fine;
+    return iterations;
 }
 
 }  // namespace
@@ -119,11 +141,17 @@ tl::expected<BodySolution, CalibrationError> updateJointly(const BodySolution& l
     movePoses(next, *last.input.gravity, gravity);
     replaceDetections(next, measurements);
     next.evidence = patchEvidence(next.layout, next.shapes.shapes, next.input.pixels);
-    attachWhatIsNew(next, options.start.initial);
-    next.estimate.stages.push_back(clock.stop());
-
     RefinementOptions once = options.refinement;
     once.maxReweightings = 1;
+    int iterations = 0;
+    if (attachWhatIsNew(next, options.start.initial)) {
+        const auto took = adjustCoarsely(next, options.start.adjustment, context);
+        if (!took)
+            return tl::unexpected(took.error());
+        iterations = *took;
+        once.maxReweightings = 3;
+    }
+    next.estimate.stages.push_back(clock.stop(iterations));
     const auto review = refineJointly(next, once, context);
     if (!review)
         return tl::unexpected(review.error());

@@ -95,8 +95,10 @@ bool setSecondPlaceAside(BodySolution& solution, std::size_t view) {
         rotationAngle(T.linear()) > kNearAngle) {
         // One place, but not where the view was taken to stand: between two that it can't be at once, or astray.
         const bool better = first->members.size() > countedIn(solution, seen) + kFewest;
-        if (better)
+        if (better) {
             solution.solved.T_r_v[view] = first->T_r_v;
+            anchorAtFirstView(solution);
+        }
         return better;
     }
     BodyEstimate& estimate = solution.estimate;
@@ -105,17 +107,16 @@ bool setSecondPlaceAside(BodySolution& solution, std::size_t view) {
     finding.kind = Finding::Kind::BumpedView;
     finding.view = name;
     finding.text = fmt::format(
-        "view {}: the camera was moved half-way, by {:.1f} mm and {:.2f}°: {} of its {} detections fit the second "
-        "place "
-        "and do not count",
-        name, T.translation().norm() * 1e3, rotationAngle(T.linear()) / kDegree, second->members.size(),
-        seen.pixels.size());
+        "view {}: the camera was moved half-way, by {:.1f} mm and {:.2f}°: what it saw from the second place does not "
+        "count",
+        name, T.translation().norm() * 1e3, rotationAngle(T.linear()) / kDegree);
     for (const std::size_t i : second->members) {
         finding.modules.push_back(solution.input.skin->modules[solution.input.pixels[seen.pixels[i]].module].id);
         estimate.setAside[seen.pixels[i]] = "seen from where the camera stood after it was moved";
     }
     estimate.findings.push_back(std::move(finding));
     solution.solved.T_r_v[view] = first->T_r_v;
+    anchorAtFirstView(solution);
     solution.input.viewNoise[view] = 1;
     return true;
 }

@@ -22,23 +22,6 @@ double pixelNoiseFactor(const AdjustmentInput& input, const BodyState& state, do
     return lengths.empty() ? 1.0 : median(std::move(lengths)) / 1.1774;
 }
 
-/// Places the body frame where the first placed view stands, which is held from here on.
-void useFirstViewAsFrame(BodySolution& solution) {
-    BodyState& state = solution.solved;
-    const auto root = std::find_if(state.T_r_v.begin(), state.T_r_v.end(), [](const auto& T) { return T.has_value(); });
-    if (root == state.T_r_v.end())
-        return;
-    solution.gauge.views = {static_cast<std::size_t>(root - state.T_r_v.begin())};
-    const Isometry3d T_v_r = (*root)->inverse();
-    for (auto* poses : {&state.T_r_v, &state.T_r_u}) {
-        for (auto& T : *poses) {
-            if (T)
-                T = T_v_r * *T;
-        }
-    }
-    state.up_r.clear();
-}
-
 /// From a pixel scale at which the initial shapes are right to that of the detections.
 tl::expected<int, CalibrationError> adjustGradually(BodySolution& solution, const SturdyMethodOptions& options,
                                                     const RunContext& context) {
@@ -111,7 +94,7 @@ tl::expected<BodySolution, CalibrationError> solveRound(const Measurements& meas
     estimate.stages.push_back(clock.stop());
     if (!solution.anyViewPlaced())
         return solution;
-    useFirstViewAsFrame(solution);
+    anchorAtFirstView(solution);
     StageClock adjusting("coarse adjustment");
     const auto iterations = adjustGradually(solution, options, context);
     if (!iterations)

@@ -15,6 +15,7 @@ struct CalibrateArguments {
     std::filesystem::path recording;
     std::filesystem::path output;
     std::string method{name(CalibrateOptions{}.method)};
+    double misalignment_deg = 0;
     bool json = false;
 };
 
@@ -35,6 +36,7 @@ int runCalibrate(const CalibrateArguments& arguments) {
         return badInput(*complaint);
     CalibrateOptions options;
     options.method = *methodFromName(arguments.method);
+    options.joint.misalignmentSigma = arguments.misalignment_deg * kDegree;
     tl::expected<BodyModel, CalibrateError> body;
     {
         TerminalProgress progress;
@@ -76,6 +78,12 @@ void addCalibrateCommand(CommandLine& line) {
                      "paper: the method of the IROS 2014 paper to the letter, as a baseline")
         ->check(CLI::IsMember({"joint", "sturdy", "paper"}))
         ->capture_default_str();
+    command
+        ->add_option(
+            "--misalignment", arguments->misalignment_deg,
+            "How far accelerometers sit askew on their boards, in degrees about each axis (standard deviation), "
+            "where their maker says so; joint method only. It enters the uncertainties, too")
+        ->check(CLI::Range(0.0, 20.0));
     command->add_flag("--json", arguments->json, "Print the quality figures as JSON");
     command->footer(
         "A recording is a directory with recording.json, which holds\n"

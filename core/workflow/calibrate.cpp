@@ -111,6 +111,8 @@ tl::expected<BodyModel, CalibrateError> calibrate(const Recording& recording, co
         stages.insert(stages.begin(), read);
     body->generator.version = SKINCAL_VERSION;
     body->generator.options["method"] = std::string(name(options.method));
+    if (options.method == Method::Joint && options.joint.misalignmentSigma > 0)
+        body->generator.options["misalignment_deg"] = fmt::format("{}", options.joint.misalignmentSigma / kDegree);
     return *body;
 }
 

@@ -25,6 +25,7 @@ struct CommandLine {
 };
 
 void addCalibrateCommand(CommandLine& line);
+void addAdviseCommand(CommandLine& line);
 void addCompareCommand(CommandLine& line);
 void addExportCommand(CommandLine& line);
 void addRenderCommand(CommandLine& line);

@@ -50,6 +50,7 @@ int runProgram(int argc, char** argv) {
     line.app.footer(exitCodes);  // of every command that has none of its own
     addDemoCommand(line);
     addCalibrateCommand(line);
+    addAdviseCommand(line);
     addSimulateCommand(line);
     addCompareCommand(line);
     addRenderCommand(line);

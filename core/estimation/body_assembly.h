@@ -37,8 +37,8 @@ struct BodyEstimate {
     std::vector<std::string> missing;
     std::vector<Finding> findings;
     std::vector<StageReport> stages;
-    std::size_t undecidedViews = 0;   ///< that could be in two places as well as not
-    Trust trustAtMost = Trust::Good;  ///< where the method knows of a reason for doubt
+    std::vector<std::size_t> undecidedViews;  ///< those that could be in two places as well as not
+    Trust trustAtMost = Trust::Good;          ///< where the method knows of a reason for doubt
 };
 
 /// Fills in verdicts, residuals, link distances and the quality figures, and says whether to trust the result.

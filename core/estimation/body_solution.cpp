@@ -78,11 +78,11 @@ void reportMissing(BodySolution& solution, const Measurements& measurements, con
             estimate.warnings.push_back(
                 fmt::format("view {} is not used: it {}", measurements.views[v].name, estimate.viewStatus[v]));
     }
-    if (estimate.undecidedViews > 0) {
+    if (!estimate.undecidedViews.empty()) {
         estimate.trustAtMost = Trust::Usable;
         estimate.warnings.push_back(
             fmt::format("{} views show a flat patch alone and could be in two places: the likelier was taken",
-                        estimate.undecidedViews));
+                        estimate.undecidedViews.size()));
     }
     reportOwnGravity(solution);
     for (const Finding& finding : estimate.findings)

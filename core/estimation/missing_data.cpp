@@ -38,36 +38,56 @@ std::vector<PatchEvidence> patchEvidence(const SkinLayout& layout, const std::ve
     return evidence;
 }
 
-std::string whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed,
-                         bool anyPlaced) {
-    const std::string who = fmt::format("patch {} (origin {})", patch.id.value, skin.modules[patch.origin].id.value);
+NotPlaced reasonNotPlaced(const Patch& patch, const PatchEvidence& evidence, int needed, bool anyPlaced) {
     const auto enough = static_cast<std::size_t>(needed);
     if (evidence.mostDetected == 0)
-        return who + " was seen in no view: add one that shows it beside a placed patch";
+        return NotPlaced::Unseen;
     if (evidence.mostUsable < enough && evidence.mostDetected > evidence.mostUsable)
-        return fmt::format(
-            "{} showed {} in a view, but {} of their modules have gravity readings that tell how they lie: read their "
-            "accelerometers in two poses or more that tilt the body differently",
-            who, leds(evidence.mostDetected),
-            evidence.mostUsable == 0 ? "none" : fmt::format("only {}", evidence.mostUsable));
+        return NotPlaced::ShapeUnknown;
     if (patch.modules.size() < enough)
-        return fmt::format(
-            "{} has {} of the {} LEDs that a pose takes: show it in two views or more in which other patches are "
-            "placed",
-            who, patch.modules.size(), needed);
+        return NotPlaced::TooSmall;
     if (evidence.mostUsable < enough)
-        return fmt::format(
-            "{} showed at most {} in a view, {} are needed: move the camera closer or more in front of it", who,
-            leds(evidence.mostUsable), needed);
+        return NotPlaced::TooFewLeds;
     const auto commonest = std::max_element(evidence.poseFailures.begin(), evidence.poseFailures.end(),
                                             [](const auto& a, const auto& b) { return a.second < b.second; });
     if (commonest != evidence.poseFailures.end() && commonest->first == ErrorCode::DegeneratePoints)
-        return who + " showed only LEDs in one line, which have no pose: add a view that shows more of it";
+        return NotPlaced::OnALine;
     if (commonest != evidence.poseFailures.end() && commonest->first == ErrorCode::NoConsensus)
-        return who + " is nowhere where its shape explains the LEDs: its links, module types or detections are wrong";
-    if (!anyPlaced)
-        return who + " could be in two places in each view: add one that shows it more from the side";
-    return who + " was never seen with a placed patch: add a view that shows both";
+        return NotPlaced::Contradicted;
+    return anyPlaced ? NotPlaced::NeverWithPlaced : NotPlaced::TwoPlaces;
+}
+
+std::string whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed,
+                         bool anyPlaced) {
+    const std::string who = fmt::format("patch {} (origin {})", patch.id.value, skin.modules[patch.origin].id.value);
+    switch (reasonNotPlaced(patch, evidence, needed, anyPlaced)) {
+        case NotPlaced::Unseen:
+            return who + " was seen in no view: add one that shows it" + (anyPlaced ? " beside a placed patch" : "");
+        case NotPlaced::ShapeUnknown:
+            return fmt::format(
+                "{} showed {} in a view, but {} of their modules have gravity readings that tell how they lie: read "
+                "their accelerometers in two poses or more that tilt the body differently",
+                who, leds(evidence.mostDetected),
+                evidence.mostUsable == 0 ? "none" : fmt::format("only {}", evidence.mostUsable));
+        case NotPlaced::TooSmall:
+            return fmt::format(
+                "{} has {} of the {} LEDs that a pose takes: show it in two views or more in which other patches are "
+                "placed",
+                who, patch.modules.size(), needed);
+        case NotPlaced::TooFewLeds:
+            return fmt::format(
+                "{} showed at most {} in a view, {} are needed: move the camera closer or more in front of it", who,
+                leds(evidence.mostUsable), needed);
+        case NotPlaced::OnALine:
+            return who + " showed only LEDs in one line, which have no pose: add a view that shows more of it";
+        case NotPlaced::Contradicted:
+            return who +
+                   " is nowhere where its shape explains the LEDs: its links, module types or detections are wrong";
+        case NotPlaced::TwoPlaces:
+            return who + " could be in two places in each view: add one that shows it more from the side";
+        default:
+            return who + " was never seen with a placed patch: add a view that shows both";
+    }
 }
 
 std::string whyNotHeld(const Skin& skin, const std::vector<std::size_t>& modules) {

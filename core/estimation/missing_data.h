@@ -21,9 +21,23 @@ struct PatchEvidence {
 [[nodiscard]] std::vector<PatchEvidence> patchEvidence(const SkinLayout& layout, const std::vector<PatchShape>& shapes,
                                                        const std::vector<PixelObservation>& pixels);
 
-/// What an operator has to do about a patch that could not be placed, in plain English.
+enum class NotPlaced {
+    Unseen,          ///< in no view
+    ShapeUnknown,    ///< too few of the modules seen have readings that tell how they lie
+    TooSmall,        ///< the whole patch has fewer LEDs than a pose needs
+    TooFewLeds,      ///< no view shows enough of it
+    OnALine,         ///< what is seen of it lies on a line
+    Contradicted,    ///< its shape explains its pictures nowhere
+    TwoPlaces,       ///< nothing is placed, and it could be in two places in each view
+    NeverWithPlaced  ///< no view shows it with a placed patch
+};
+
+/// Why a patch could not be placed.
 /// @param needed       LEDs that a pose needs.
 /// @param anyPlaced    false where nothing of the body could be placed.
+[[nodiscard]] NotPlaced reasonNotPlaced(const Patch& patch, const PatchEvidence& evidence, int needed, bool anyPlaced);
+
+/// What an operator has to do about a patch that could not be placed, in plain English; parameters as above.
 [[nodiscard]] std::string whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed,
                                        bool anyPlaced);
 

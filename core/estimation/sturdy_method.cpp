@@ -89,7 +89,7 @@ tl::expected<BodySolution, CalibrationError> solveRound(const Measurements& meas
         if (!settled)
             return tl::unexpected(settled.error());
         solution.solved = std::move(settled->state);
-        estimate.undecidedViews = settled->undecided;
+        estimate.undecidedViews = std::move(settled->undecided);
     }
     estimate.stages.push_back(clock.stop());
     if (!solution.anyViewPlaced())

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace skincal {
 namespace {
@@ -14,7 +15,8 @@ constexpr double kDecisive = 3.0;
 tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& input, BodyState start,
                                                          const std::vector<ViewAlternative>& alternatives,
                                                          const AdjustmentOptions& options, const RunContext& context) {
-    SettledViews settled{std::move(start), 0};
+    SettledViews settled{std::move(start), {}};
+    std::set<std::size_t> undecided;
     const auto& modules = settled.state.T_r_u;
     const auto first = std::find_if(modules.begin(), modules.end(), [](const auto& T) { return T.has_value(); });
     if (first == modules.end())
@@ -35,12 +37,13 @@ tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& 
         if (!result)
             continue;
         if (best && std::abs(result->summary.finalCost - best->summary.finalCost) < kDecisive)
-            ++settled.undecided;
+            undecided.insert(alternative.view);
         if (!best || result->summary.finalCost < best->summary.finalCost) {
             settled.state = std::move(other);
             best = std::move(result);
         }
     }
+    settled.undecided.assign(undecided.begin(), undecided.end());
     return settled;
 }
 

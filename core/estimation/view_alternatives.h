@@ -15,7 +15,7 @@ struct ViewAlternative {
 
 struct SettledViews {
     BodyState state;
-    std::size_t undecided = 0;  ///< views whose alternative costs nearly as little
+    std::vector<std::size_t> undecided;  ///< views whose alternative costs nearly as little, rising
 };
 
 /// Settles by cost what no other evidence could: tries each alternative in turn, adjusts, and keeps the one that the

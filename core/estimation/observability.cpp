@@ -1,0 +1,206 @@
+#include "core/estimation/observability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "core/estimation/gravity_shortfall.h"
+#include "core/estimation/patch_shortfall.h"
+#include "core/estimation/view_forecast.h"
+
+namespace skincal {
+namespace {
+
+double largestAngle(const std::vector<Vector3d>& directions) {
+    double angle = 0;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        for (std::size_t j = i + 1; j < directions.size(); ++j)
+            angle = std::max(angle, std::acos(std::clamp(directions[i].dot(directions[j]), -1.0, 1.0)));
+    }
+    return angle;
+}
+
+void findFewViews(ShortfallSearch& search) {
+    const std::size_t patches = search.solution.layout.patches.size();
+    std::vector<std::map<std::size_t, std::size_t>> leds(patches);  // per patch: by view
+    for (const PixelObservation& o : search.basis.used.pixels)
+        ++leds[search.solution.layout.patchOf[o.module]][o.view];
+    Shortfall shortfall{Shortfall::Kind::FewViews};
+    double widest = 0;
+    for (std::size_t k = 0; k < patches; ++k) {
+        const Patch& patch = search.patch(k);
+        if (!search.basis.isPlaced(patch.origin))
+            continue;
+        const Vector3d middle = search.basis.state.T_r_u[patch.origin]->translation();
+        std::vector<Vector3d> directions;
+        for (const auto& [v, count] : leds[k]) {
+            if (count >= std::min<std::size_t>(3, patch.modules.size()))
+                directions.push_back((search.basis.state.T_r_v[v]->translation() - middle).normalized());
+        }
+        const double angle = largestAngle(directions);
+        if (directions.empty() || angle >= search.options.viewAngle)
+            continue;
+        widest = std::max(widest, angle);
+        shortfall.patches.push_back(patch.id);
+    }
+    if (shortfall.patches.empty())
+        return;
+    shortfall.figure = widest / kDegree;
+    shortfall.unit = "deg";
+    const bool one = shortfall.patches.size() == 1;
+    shortfall.text = fmt::format(
+        "{} {} seen {}, so that {} distance from the camera rests on {} own size: add a view from 30° and more aside",
+        listed(shortfall.patches), one ? "is" : "are",
+        widest > 0 ? fmt::format("from one direction only (views at most {:.0f}° apart)", widest / kDegree)
+                   : "in one view only",
+        one ? "its" : "their", one ? "its" : "their");
+    search.found.push_back(std::move(shortfall));
+}
+
+void reportModules(ShortfallSearch& search, Shortfall::Kind kind, const std::vector<std::size_t>& modules,
+                   const std::optional<BodyPrecision>& precision, const char* one, const char* many) {
+    if (modules.empty())
+        return;
+    Shortfall shortfall{kind};
+    double sigma = 0;
+    for (const std::size_t u : modules) {
+        shortfall.modules.push_back(search.id(u));
+        sigma = std::max(sigma, precision ? precision->sigma(u) : 0);
+    }
+    std::string figure;
+    if (precision) {
+        shortfall.figure = sigma * 1e3;
+        shortfall.unit = "mm";
+        figure = fmt::format(" ({}±{:.2f} mm)", modules.size() == 1 ? "" : "up to ", sigma * 1e3);
+    }
+    shortfall.text = fmt::format("{} placed by gravity and links alone{}, for {}",
+                                 listed(shortfall.modules) + (modules.size() == 1 ? " is" : " are"), figure,
+                                 modules.size() == 1 ? one : many);
+    search.found.push_back(std::move(shortfall));
+}
+
+void findDarkModules(ShortfallSearch& search, const std::optional<BodyPrecision>& precision) {
+    const UnseenModules dark = unseenModules(search.basis, {});
+    reportModules(search, Shortfall::Kind::ModulesUnseen, dark.unseen, precision,
+                  "no view looks at it: add one that does", "no view looks at them: add one that does");
+    reportModules(search, Shortfall::Kind::ModulesHidden, dark.hidden, precision,
+                  "the views that look at it do not show it: it is covered, or its LED is broken",
+                  "the views that look at them do not show them: they are covered, or their LEDs are broken");
+}
+
+/// The two modules that are the farthest apart, roughly: the farthest from the first, and the farthest from that.
+std::pair<std::size_t, std::size_t> farApart(const BodyState& state, std::size_t first) {
+    const auto farthest = [&](std::size_t from) {
+        std::size_t best = from;
+        double distance = 0;
+        for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
+            const double d =
+                state.T_r_u[u] ? (state.T_r_u[u]->translation() - state.T_r_u[from]->translation()).norm() : 0;
+            if (d > distance) {
+                distance = d;
+                best = u;
+            }
+        }
+        return best;
+    };
+    const std::size_t a = farthest(first);
+    return {a, farthest(a)};
+}
+
+void findPoorScale(ShortfallSearch& search, const BodyPrecision& precision) {
+    const auto& links = search.basis.used.links;
+    const bool linked = std::any_of(links.begin(), links.end(), [&](const PortPair& link) {
+        return search.basis.isPlaced(link.a) && search.basis.isPlaced(link.b);
+    });
+    const auto first = precision.worst();
+    if (!first || (linked && precision.scale <= search.options.relativeScale))
+        return;
+    const auto [a, b] = farApart(search.basis.state, *first);
+    if (a == b)
+        return;
+    const auto led = [&](std::size_t u) -> Vector3d {
+        return *search.basis.state.T_r_u[u] * search.skin().templateOf(u).led;
+    };
+    const double distance = (led(a) - led(b)).norm();
+    Shortfall shortfall{Shortfall::Kind::ScaleFromLinksOnly};
+    shortfall.modules = {search.id(a), search.id(b)};
+    shortfall.figure = precision.scale * 100;
+    shortfall.unit = "%";
+    shortfall.text = fmt::format(
+        "{}, so that the size of the body is known to {:.1f} % only: measure the distance between the LEDs of modules "
+        "{} and {}, here {:.1f} ± {:.1f} mm, or add modules that are linked port to port",
+        linked ? "few links tell how large the body is"
+               : "no link joins placed modules, their LEDs' offsets alone "
+                 "tell how large the body is",
+        precision.scale * 100, search.id(a).value, search.id(b).value, distance * 1e3,
+        distance * precision.scale * 1e3);
+    search.found.push_back(std::move(shortfall));
+}
+
+}  // namespace
+
+std::string_view name(Shortfall::Kind kind) {
+    switch (kind) {
+        case Shortfall::Kind::GravityMissing:
+            return "gravity-missing";
+        case Shortfall::Kind::PosesAlike:
+            return "poses-alike";
+        case Shortfall::Kind::PatchUnseen:
+            return "patch-unseen";
+        case Shortfall::Kind::PatchSeenTooLittle:
+            return "patch-seen-too-little";
+        case Shortfall::Kind::PatchNeverWithPlaced:
+            return "patch-never-with-placed";
+        case Shortfall::Kind::PatchContradicted:
+            return "patch-contradicted";
+        case Shortfall::Kind::UndecidedViews:
+            return "undecided-views";
+        case Shortfall::Kind::FewViews:
+            return "few-views";
+        case Shortfall::Kind::ModulesHidden:
+            return "modules-hidden";
+        case Shortfall::Kind::ModulesUnseen:
+            return "modules-unseen";
+        case Shortfall::Kind::ScaleFromLinksOnly:
+            return "scale-from-links-only";
+        default:
+            return "undetermined";
+    }
+}
+
+std::vector<Shortfall> findShortfalls(const BodySolution& solution, const ShortfallOptions& options) {
+    if (!options.validate())
+        throw std::logic_error("ShortfallOptions out of range");
+    ShortfallSearch search{solution, options, adviceBasis(solution)};
+    search.found = gravityShortfalls(solution, search.basis, options);
+    findUnplacedPatches(search);
+    findUndecidedViews(search);
+    findFewViews(search);
+    std::optional<BodyPrecision> precision;
+    if (search.basis.placedModules() > 0) {
+        auto computed = bodyPrecision(search.basis.used, search.basis.state, solution.gauge, solution.weights);
+        if (computed)
+            precision = std::move(*computed);
+        else
+            search.found.push_back({Shortfall::Kind::Undetermined,
+                                    {},
+                                    {},
+                                    {},
+                                    {},
+                                    {},
+                                    {},
+                                    "the measurements do not fix where everything is, so that nothing can be said of "
+                                    "how exact the result is: add gravity poses and views"});
+    }
+    findDarkModules(search, precision);
+    if (precision)
+        findPoorScale(search, *precision);
+    std::stable_sort(search.found.begin(), search.found.end(),
+                     [](const Shortfall& a, const Shortfall& b) { return a.kind < b.kind; });
+    return std::move(search.found);
+}
+
+}  // namespace skincal

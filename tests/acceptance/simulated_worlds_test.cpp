@@ -124,7 +124,9 @@ TEST(SimulatedWorlds, ParallelPosesAreNotEnoughAndItIsSaid) {
     const Recording recording = recordingOf(world);
     const auto body = calibrate(recording, framesOf(world, recording));
     ASSERT_TRUE(body) << body.error().message;
-    EXPECT_EQ(body->quality.modulesPlaced, 0U);
+    // What the pictures alone hold is placed, but nobody is told to rely on it.
+    EXPECT_LT(body->quality.modulesPlaced, body->quality.modulesTotal);
+    EXPECT_EQ(body->quality.trust, Trust::NotToBeTrusted);
     EXPECT_THAT(body->quality.missing, testing::Contains(testing::HasSubstr("tilt")));
 }
 

@@ -80,9 +80,9 @@ tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements
                                                               const GravityTable& gravity, SolutionHistory& history,
                                                               const JointMethodOptions& options,
                                                               const RunContext& context) {
+    std::vector<std::string> known = history.refuted;
     auto solution = solveOnce(measurements, gravity, history, options, context);
     constexpr int kMostRounds = 3;
-    std::vector<std::string> known;
     for (int round = 0; solution && history.refuted != known && round < kMostRounds; ++round) {
         known = history.refuted;
         auto stages = std::move(solution->estimate.stages);

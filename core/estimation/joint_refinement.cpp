@@ -93,8 +93,9 @@ bool judgeViews(const AdjustmentInput& used, const SolutionReview& review, const
         ofView[used.pixels[i].view].add(review.pixels[i]);
     const std::vector<double> before = solution.input.viewNoise;
     bool stands = judgeGroups(ofView, options.noisyView, solution.input.viewNoise);
+    const std::vector<bool> doubtful = viewsWithManyRejected(solution);
     for (std::size_t v = 0; v < ofView.size(); ++v) {
-        if (solution.input.viewNoise[v] > 1 || manyRejected(solution, v))
+        if (solution.input.viewNoise[v] > 1 || doubtful[v])
             stands = !setSecondPlaceAside(solution, v) && stands;
     }
     return stands;

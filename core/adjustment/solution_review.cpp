@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/adjustment/linearisation.h"
+#include "core/geometry/parallel.h"
 
 namespace skincal {
 namespace {
@@ -105,8 +106,13 @@ tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentIn
     for (std::size_t u = 0; u < state.T_r_u.size(); ++u)
         result.gravity[u].resize(input.gravity->of(u).size());
     std::array<VarianceComponent, kMeasurementKinds.size()> sums{};
-    for (const LinearisedBlock& block : linear.blocks) {
-        const MeasurementReview own = reviewOf(linear, block, inverse);
+    constexpr std::size_t kChunk = 256;
+    std::vector<MeasurementReview> reviews(linear.blocks.size());
+    forEachInParallel(reviews.size(), kChunk,
+                      [&](std::size_t i) { reviews[i] = reviewOf(linear, linear.blocks[i], inverse); });
+    for (std::size_t i = 0; i < reviews.size(); ++i) {
+        const LinearisedBlock& block = linear.blocks[i];
+        const MeasurementReview& own = reviews[i];
         VarianceComponent& sum = sums.at(static_cast<std::size_t>(block.kind));
         sum.squares += own.squares;
         sum.redundancy += own.redundancy;
@@ -119,10 +125,10 @@ tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentIn
     }
     result.noise = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
     result.covariances.resize(state.T_r_u.size());
-    for (std::size_t u = 0; u < state.T_r_u.size(); ++u) {
+    forEachInParallel(state.T_r_u.size(), kChunk, [&](std::size_t u) {
         if (state.T_r_u[u])
             result.covariances[u] = covarianceOf(problem, u, linear, inverse);
-    }
+    });
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/estimation/patch_sightings.h"
+#include "core/geometry/parallel.h"
 
 namespace skincal {
 namespace {
@@ -29,17 +30,24 @@ struct Work : InitialEstimate {
 };
 
 void findCandidates(Work& run) {
-    for (std::size_t s = 0; s < run.sightings.size(); ++s) {
-        const PatchSighting& sighting = run.sightings[s];
-        run.context.report("patch poses", static_cast<double>(s) / static_cast<double>(run.sightings.size()));
-        if (run.context.isCancelled())
-            return;
-        SightingCandidates candidates{sighting.view, sighting.patch, {}};
-        auto poses = estimatePatchPoses(sighting.leds, run.measurements->camera, run.options.pose);
-        if (poses)
-            candidates.poses = std::move(*poses);
-        else if (poses.error().code != ErrorCode::TooFewPoints)
-            ++run.evidence[sighting.patch].poseFailures[poses.error().code];
+    using Poses = tl::expected<std::vector<PatchPose>, CalibrationError>;
+    const std::size_t count = run.sightings.size();
+    std::vector<Poses> found(count);
+    forEachInParallel(
+        count, 1,
+        [&](std::size_t s) {
+            found[s] = estimatePatchPoses(run.sightings[s].leds, run.measurements->camera, run.options.pose);
+        },
+        [&](std::size_t s) {
+            run.context.report("patch poses", static_cast<double>(s) / static_cast<double>(count));
+            return !run.context.isCancelled();
+        });
+    for (std::size_t s = 0; s < count; ++s) {
+        SightingCandidates candidates{run.sightings[s].view, run.sightings[s].patch, {}};
+        if (found[s])
+            candidates.poses = std::move(*found[s]);
+        else if (found[s].error().code != ErrorCode::TooFewPoints)
+            ++run.evidence[run.sightings[s].patch].poseFailures[found[s].error().code];
         run.candidates.push_back(std::move(candidates));
     }
 }

@@ -26,10 +26,18 @@ struct InitialEstimateOptions {
     GravityAlignmentOptions gravity;
     SelectionOptions selection;
     PoseAveragingOptions averaging;
-    AdjustmentOptions shapes;                     ///< of the fit that gives patches their shapes
+    AdjustmentOptions shapes = roughly();         ///< of the fit that gives patches their shapes
     double gravityRotationSigma = 0.5 * kDegree;  ///< of a patch's rotation from gravity alone
 
     [[nodiscard]] bool validate() const;
+
+  private:
+    /// The body's own adjustment follows.
+    static AdjustmentOptions roughly() {
+        AdjustmentOptions options;
+        options.tolerance = 1e-6;
+        return options;
+    }
 };
 
 /// Where everything lies before the whole body is adjusted, and what is still open.

@@ -29,14 +29,23 @@ void startWeights(BodySolution& solution, const JointMethodOptions& options) {
     weights.pixelSigmaFloor_px = kFloor_px;
     weights.pixelLoss = 0;
     weights.misalignmentSigma = options.misalignmentSigma;
+    weights.tolerance = options.start.adjustment.tolerance;
     weights.lossBegins = options.refinement.lossBegins;
+}
+
+/// The sturdy method as a start only.
+SturdyMethodOptions startOptions(const JointMethodOptions& options) {
+    constexpr double kRoughly = 1e-6;
+    SturdyMethodOptions start = options.start;
+    start.adjustment.tolerance = std::max(start.adjustment.tolerance, kRoughly);
+    return start;
 }
 
 /// One solution with the links as they are known, suspects taken out.
 tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measurements, const GravityTable& gravity,
                                                        SolutionHistory& history, const JointMethodOptions& options,
                                                        const RunContext& context) {
-    auto solution = solveSturdily(measurements, gravity, history, options.start, context);
+    auto solution = solveSturdily(measurements, gravity, history, startOptions(options), context);
     if (!solution)
         return solution;
     solution->estimate.method = "joint";
@@ -71,9 +80,9 @@ tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements
                                                               const GravityTable& gravity, SolutionHistory& history,
                                                               const JointMethodOptions& options,
                                                               const RunContext& context) {
+    std::vector<std::string> known = history.refuted;
     auto solution = solveOnce(measurements, gravity, history, options, context);
     constexpr int kMostRounds = 3;
-    std::vector<std::string> known;
     for (int round = 0; solution && history.refuted != known && round < kMostRounds; ++round) {
         known = history.refuted;
         auto stages = std::move(solution->estimate.stages);

@@ -55,10 +55,13 @@ bool judgeGroups(const std::vector<Sum>& sums, double limit, std::vector<double>
     constexpr std::size_t kEnoughToCompare = 4;
     if (factors.size() < kEnoughToCompare)
         return true;
-    const double typical = median(std::move(factors));
+    // Residuals that are nothing against their standard deviation are rounding: which group has more of it says
+    // nothing.
+    constexpr double kRounding = 1e-2;
+    const double typical = std::max(kRounding, median(std::move(factors)));
     bool stands = true;
     for (std::size_t k = 0; k < sums.size(); ++k) {
-        if (sums[k].redundancy <= kLeastRedundancy || typical <= 0)
+        if (sums[k].redundancy <= kLeastRedundancy)
             continue;
         const double found = noise[k] * std::sqrt(sums[k].squares / sums[k].redundancy) / typical;
         const double now = found > limit ? found : 1;
@@ -90,8 +93,9 @@ bool judgeViews(const AdjustmentInput& used, const SolutionReview& review, const
         ofView[used.pixels[i].view].add(review.pixels[i]);
     const std::vector<double> before = solution.input.viewNoise;
     bool stands = judgeGroups(ofView, options.noisyView, solution.input.viewNoise);
+    const std::vector<bool> doubtful = viewsWithManyRejected(solution);
     for (std::size_t v = 0; v < ofView.size(); ++v) {
-        if (solution.input.viewNoise[v] > 1 || manyRejected(solution, v))
+        if (solution.input.viewNoise[v] > 1 || doubtful[v])
             stands = !setSecondPlaceAside(solution, v) && stands;
     }
     return stands;

@@ -118,7 +118,8 @@ void refine(const Scene& scene, const PatchPoseOptions& options, PatchPose& pose
         Matrix6d damped = H;
         damped.diagonal() += lambda * H.diagonal() + Vector6d::Constant(1e-12);
         const Vector6d d = -damped.ldlt().solve(g);
-        if (!d.allFinite())
+        constexpr double kNothing = 1e-9;  // rad and m: another step would find no less
+        if (!d.allFinite() || d.norm() < kNothing)
             break;
         PatchPose next;
         const Matrix3d dR = so3Exp(d.head<3>());

@@ -120,16 +120,19 @@ std::size_t countedIn(const BodySolution& solution, const Seen& seen) {
 
 }  // namespace
 
-bool manyRejected(const BodySolution& solution, std::size_t view) {
-    std::size_t rejected = 0;
-    std::size_t all = 0;
+std::vector<bool> viewsWithManyRejected(const BodySolution& solution) {
+    std::vector<std::size_t> rejected(solution.solved.T_r_v.size(), 0);
+    std::vector<std::size_t> all(rejected.size(), 0);
     for (std::size_t i = 0; i < solution.input.pixels.size(); ++i) {
-        if (solution.input.pixels[i].view != view || !solution.estimate.setAside[i].empty())
+        if (!solution.estimate.setAside[i].empty())
             continue;
-        ++all;
-        rejected += solution.estimate.rejected[i] ? 1 : 0;
+        ++all[solution.input.pixels[i].view];
+        rejected[solution.input.pixels[i].view] += solution.estimate.rejected[i] ? 1 : 0;
     }
-    return rejected >= kFewest && 6 * rejected > all;
+    std::vector<bool> many(all.size());
+    for (std::size_t v = 0; v < many.size(); ++v)
+        many[v] = rejected[v] >= kFewest && 6 * rejected[v] > all[v];
+    return many;
 }
 
 bool setSecondPlaceAside(BodySolution& solution, std::size_t view) {

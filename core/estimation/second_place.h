@@ -4,8 +4,8 @@
 
 namespace skincal {
 
-/// Whether so many detections of a view are rejected that the view itself is to be doubted.
-[[nodiscard]] bool manyRejected(const BodySolution& solution, std::size_t view);
+/// Per view: whether so many of its detections are rejected that the view itself is to be doubted.
+[[nodiscard]] std::vector<bool> viewsWithManyRejected(const BodySolution& solution);
 
 /// Looks in one view for two near places of the camera (10 cm, 10 degrees) that explain its detections together: it was
 /// knocked half-way through the scan. The view keeps the place that explains more; the other's detections are set aside

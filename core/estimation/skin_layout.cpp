@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "core/geometry/statistics.h"
 
@@ -19,76 +20,125 @@ double neighbourDistance(const Skin& skin, const GraphLink& link, const std::opt
     return (port_a + R * (b.led - port_b) - a.led).norm();
 }
 
-/// What one view shows of links, in px per metre of the distance that neighbours have; nothing where it does not show
-/// both ends.
-struct ViewOfLinks {
-    std::vector<std::optional<double>> scale;       ///< per link
-    std::vector<std::vector<std::size_t>> linksOf;  ///< per module, the links that are shown
+/// What one view shows of links, in px per metre of the distance that neighbours have. Made once for all views: a view
+/// costs what it shows, not what there is.
+class ViewOfLinks {
+  public:
+    ViewOfLinks(const std::vector<GraphLink>& links, std::vector<double> expected, std::size_t modules)
+        : links_(links),
+          expected_(std::move(expected)),
+          pixels_(modules),
+          linksAt_(modules),
+          linksOf_(modules),
+          scale_(links.size()) {
+        for (std::size_t l = 0; l < links.size(); ++l)
+            linksAt_[links[l].a].push_back(l);
+    }
+
+    void show(const std::vector<std::pair<std::size_t, Vector2d>>& detections) {
+        for (const std::size_t u : seen_) {
+            pixels_[u].reset();
+            linksOf_[u].clear();
+        }
+        seen_.clear();
+        shown_.clear();
+        for (const auto& [u, pixel] : detections) {
+            if (!pixels_[u])
+                seen_.push_back(u);
+            pixels_[u] = pixel;
+        }
+        for (const std::size_t u : seen_) {
+            for (const std::size_t l : linksAt_[u]) {
+                if (pixels_[links_[l].b] && expected_[l] > 0)
+                    shown_.push_back(l);
+            }
+        }
+        std::sort(shown_.begin(), shown_.end());
+        for (const std::size_t l : shown_) {
+            scale_[l] = (*pixels_[links_[l].a] - *pixels_[links_[l].b]).norm() / expected_[l];
+            linksOf_[links_[l].a].push_back(l);
+            linksOf_[links_[l].b].push_back(l);
+        }
+    }
+
+    [[nodiscard]] const std::vector<std::size_t>& shown() const { return shown_; }  ///< links with both ends
+    [[nodiscard]] const std::vector<std::size_t>& linksOf(std::size_t module) const { return linksOf_[module]; }
+    [[nodiscard]] double scale(std::size_t link) const { return scale_[link]; }  ///< of one that is shown
+
+  private:
+    const std::vector<GraphLink>& links_;
+    std::vector<double> expected_;
+    std::vector<std::optional<Vector2d>> pixels_;
+    std::vector<std::vector<std::size_t>> linksAt_;  ///< per module, those of which it is end a
+    std::vector<std::vector<std::size_t>> linksOf_;
+    std::vector<double> scale_;
+    std::vector<std::size_t> seen_;
+    std::vector<std::size_t> shown_;
 };
 
-ViewOfLinks viewOfLinks(const std::vector<GraphLink>& links, const std::vector<double>& expected,
-                        const std::vector<std::optional<Vector2d>>& pixels) {
-    ViewOfLinks view{std::vector<std::optional<double>>(links.size()),
-                     std::vector<std::vector<std::size_t>>(pixels.size())};
-    for (std::size_t l = 0; l < links.size(); ++l) {
-        if (!pixels[links[l].a] || !pixels[links[l].b] || expected[l] <= 0)
-            continue;
-        view.scale[l] = (*pixels[links[l].a] - *pixels[links[l].b]).norm() / expected[l];
-        view.linksOf[links[l].a].push_back(l);
-        view.linksOf[links[l].b].push_back(l);
-    }
-    return view;
-}
-
-/// A scale for each link from the links round about, but none of the two modules' own: a false detection spoils all
-/// links of its module. Nothing where a view shows too little to compare with.
+/// A scale for each link that a view shows from the links round about, but none of the two modules' own: a false
+/// detection spoils all links of its module. Nothing where a view shows too little to compare with.
 std::vector<double> scalesRoundAbout(const std::vector<GraphLink>& links, const ViewOfLinks& view) {
     std::vector<double> all;
-    for (const auto& scale : view.scale) {
-        if (scale)
-            all.push_back(*scale);
-    }
+    for (const std::size_t l : view.shown())
+        all.push_back(view.scale(l));
     if (all.size() < 3)
         return {};
-    const double typical = median(all);
-    std::vector<double> local(links.size(), typical);
-    for (std::size_t l = 0; l < links.size(); ++l) {
-        if (!view.scale[l])
-            continue;
+    std::vector<double> local(all.size(), median(all));
+    for (std::size_t i = 0; i < local.size(); ++i) {
+        const GraphLink& link = links[view.shown()[i]];
         std::vector<double> nearby;
-        const auto own = [&](std::size_t module) { return module == links[l].a || module == links[l].b; };
-        for (const std::size_t end : {links[l].a, links[l].b}) {
-            for (const std::size_t next : view.linksOf[end]) {
+        const auto own = [&](std::size_t module) { return module == link.a || module == link.b; };
+        for (const std::size_t end : {link.a, link.b}) {
+            for (const std::size_t next : view.linksOf(end)) {
                 const std::size_t neighbour = links[next].a == end ? links[next].b : links[next].a;
-                for (const std::size_t other : view.linksOf[neighbour]) {
+                for (const std::size_t other : view.linksOf(neighbour)) {
                     if (!own(links[other].a) && !own(links[other].b))
-                        nearby.push_back(*view.scale[other]);
+                        nearby.push_back(view.scale(other));
                 }
             }
         }
         if (nearby.size() >= 3)
-            local[l] = median(nearby);
+            local[i] = median(nearby);
     }
     return local;
 }
 
+/// What the views tell of a link.
+struct Separations {
+    std::vector<double> seen;  ///< one per view that shows both LEDs
+    bool proven = false;       ///< in one view at least neither LED can be a false detection
+};
+
 /// Separations seen in one view, added to those of each link that shows both its LEDs. Where most of a module's links
-/// are long at once, its detection is false rather than all of them cables.
+/// are long at once, its detection is false rather than all of them cables; where at least two are as long as they
+/// should be, or all but one, it is right: a false one hardly ever lies beside a neighbour, let alone beside two.
 void addSeparationsOfView(const std::vector<GraphLink>& links, const ViewOfLinks& view, double tooLong,
-                          std::vector<std::vector<double>>& separations) {
+                          std::vector<Separations>& separations) {
     const std::vector<double> local = scalesRoundAbout(links, view);
     if (local.empty())
         return;
-    const auto isLong = [&](std::size_t l) { return *view.scale[l] > tooLong * local[l]; };
-    std::vector<bool> isFalse(view.linksOf.size(), false);
-    for (std::size_t u = 0; u < view.linksOf.size(); ++u) {
-        const auto& own = view.linksOf[u];
-        const auto longOnes = static_cast<std::size_t>(std::count_if(own.begin(), own.end(), isLong));
-        isFalse[u] = longOnes >= 2 && 2 * longOnes > own.size();
+    struct Count {
+        std::size_t all = 0, tooLong = 0;
+        [[nodiscard]] bool isRight() const { return all - tooLong >= 2 || (all == 2 && tooLong == 1); }
+        [[nodiscard]] bool isFalse() const { return tooLong >= 2 && 2 * tooLong > all; }
+    };
+    std::unordered_map<std::size_t, Count> counts;  // per module
+    for (std::size_t i = 0; i < local.size(); ++i) {
+        const std::size_t l = view.shown()[i];
+        for (const std::size_t end : {links[l].a, links[l].b}) {
+            ++counts[end].all;
+            counts[end].tooLong += view.scale(l) > tooLong * local[i] ? 1 : 0;
+        }
     }
-    for (std::size_t l = 0; l < links.size(); ++l) {
-        if (view.scale[l] && local[l] > 0 && !isFalse[links[l].a] && !isFalse[links[l].b])
-            separations[l].push_back(*view.scale[l] / local[l]);
+    for (std::size_t i = 0; i < local.size(); ++i) {
+        const std::size_t l = view.shown()[i];
+        const Count& a = counts[links[l].a];
+        const Count& b = counts[links[l].b];
+        if (local[i] <= 0 || a.isFalse() || b.isFalse())
+            continue;
+        separations[l].seen.push_back(view.scale(l) / local[i]);
+        separations[l].proven = separations[l].proven || (a.isRight() && b.isRight());
     }
 }
 
@@ -123,20 +173,22 @@ std::vector<std::optional<double>> linkSeparations(const Measurements& measureme
     for (std::size_t l = 0; l < links.size(); ++l)
         expected.push_back(links[l].a == links[l].b ? 0 : neighbourDistance(measurements.skin, links[l], R_a_b[l]));
     const auto index = measurements.skin.indexById();
-    std::vector<std::vector<double>> separations(links.size());
+    std::vector<Separations> separations(links.size());
+    ViewOfLinks shown(links, std::move(expected), measurements.skin.modules.size());
     for (const ViewDetections& view : measurements.views) {
-        std::vector<std::optional<Vector2d>> pixels(measurements.skin.modules.size());
+        std::vector<std::pair<std::size_t, Vector2d>> detections;
         for (const LedDetection& detection : view.found) {
             const auto found = index.find(detection.module);
             if (found != index.end())
-                pixels[found->second] = detection.pixel;
+                detections.emplace_back(found->second, detection.pixel);
         }
-        addSeparationsOfView(links, viewOfLinks(links, expected, pixels), tooLong, separations);
+        shown.show(detections);
+        addSeparationsOfView(links, shown, tooLong, separations);
     }
     std::vector<std::optional<double>> result(links.size());
     for (std::size_t l = 0; l < links.size(); ++l) {
-        std::vector<double>& seen = separations[l];
-        if (static_cast<int>(seen.size()) < minViews)
+        std::vector<double>& seen = separations[l].seen;
+        if (static_cast<int>(seen.size()) + (separations[l].proven ? 1 : 0) < minViews)
             continue;
         const auto quarter = seen.begin() + static_cast<std::ptrdiff_t>((seen.size() - 1) / 4);
         std::nth_element(seen.begin(), quarter, seen.end());

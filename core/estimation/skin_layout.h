@@ -24,7 +24,8 @@ struct SkinLayout {
 struct LayoutOptions {
     CableOptions cables;
     RelativeRotationOptions rotation;
-    /// In fewer views than this the distance of two spots proves nothing: one of them may be a reflection.
+    /// In fewer views than this the distance of two spots proves nothing: one of them may be a reflection. One view is
+    /// enough where both lie as they should beside other neighbours.
     int minSeparationViews = 2;
 
     [[nodiscard]] bool validate() const;
@@ -42,8 +43,8 @@ struct SolutionHistory {
 
 /// How far apart in the pictures the two LEDs of a link are: times the distance that they would have as neighbours, at
 /// the scale (px/m, foreshortened alike) of the links round about. The lower quartile over views: a false detection at
-/// either end sets neighbours apart, hardly ever puts the ends of a cable together. Nothing where too few views show
-/// both.
+/// either end sets neighbours apart, hardly ever puts the ends of a cable together. Nothing where fewer than `minViews`
+/// show both; one that shows both as they should lie beside other neighbours counts as two.
 /// @param R_a_b  relative rotation of each link's modules from gravity; taken to lie flat where it could not be
 /// measured.
 [[nodiscard]] std::vector<std::optional<double>> linkSeparations(const Measurements& measurements,

@@ -22,6 +22,10 @@ double pixelNoiseFactor(const AdjustmentInput& input, const BodyState& state, do
     return lengths.empty() ? 1.0 : median(std::move(lengths)) / 1.1774;
 }
 
+/// A relative change of the cost that is small against what is still to come: what follows moves the body farther than
+/// the last iterations at one pixel scale would.
+constexpr double kRoughly = 1e-5;
+
 /// From a pixel scale at which the initial shapes are right to that of the detections.
 tl::expected<int, CalibrationError> adjustGradually(BodySolution& solution, const SturdyMethodOptions& options,
                                                     const RunContext& context) {
@@ -37,6 +41,8 @@ tl::expected<int, CalibrationError> adjustGradually(BodySolution& solution, cons
     std::vector<double> scales_px{1.0, 0.25, floor_px};
     if (mostlyGuessed)
         scales_px.insert(scales_px.begin(), {30.0, 10.0, 3.0});
+    else
+        weights.tolerance = std::max(options.adjustment.tolerance, kRoughly);
     for (const double scale_px : scales_px) {
         context.report("adjusting the body", std::max(0.0, 1 - scale_px));
         weights.pixelSigmaFloor_px = std::max(floor_px, scale_px);
@@ -49,6 +55,7 @@ tl::expected<int, CalibrationError> adjustGradually(BodySolution& solution, cons
     // Detections are rejected against the noise that they show themselves; what is left is solved once more.
     weights.pixelSigmaFactor = std::max(1.0, pixelNoiseFactor(solution.input, solution.solved, floor_px));
     rejectFarDetections(solution, options.rejectionSigmas);
+    weights.tolerance = options.adjustment.tolerance;
     const auto took = adjustSolution(solution, usedMeasurements(solution), context);
     if (!took)
         return took;

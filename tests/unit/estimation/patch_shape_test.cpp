@@ -254,13 +254,33 @@ TEST(LinkSeparations, NeighboursAreAPitchApartAndCablesFar) {
     }
     EXPECT_GT(found[links.size() - 2].value(), 2.5);
     EXPECT_FALSE(found.back());
-    for (const auto& separation : linkSeparations(world.measurements, graph, none, 2.2, 5))
+    for (const auto& separation : linkSeparations(world.measurements, graph, none, 2.2, 6))
         EXPECT_FALSE(separation);
     // Two links in a picture have nothing to be compared with.
     for (ViewDetections& view : world.measurements.views)
         std::erase_if(view.found, [](const LedDetection& d) { return d.module.value > 3; });
     for (const auto& separation : linkSeparations(world.measurements, graph, none, 2.2, 1))
         EXPECT_FALSE(separation);
+}
+
+TEST(LinkSeparations, OneViewIsEnoughWhereBothLedsLieBesideOtherNeighbours) {
+    Random random(11, "separation in one view");
+    SyntheticOptions options;
+    options.patches = {{5, 5, 0}};
+    options.views = 1;
+    SyntheticWorld world = makeWorld(random, options);
+    auto& links = world.measurements.skin.links;
+    links.push_back({ModuleId(5), 0, ModuleId(21), 3});
+    const SkinGraph graph = buildSkinGraph(world.measurements.skin);
+    const std::vector<std::optional<Matrix3d>> none(graph.links().size());
+    EXPECT_GT(linkSeparations(world.measurements, graph, none, 2.2, 2).back().value(), 2.5);
+    // A false detection lies beside none of its neighbours: it proves nothing.
+    auto& detections = world.measurements.views.front().found;
+    const auto end = std::find_if(detections.begin(), detections.end(),
+                                  [](const LedDetection& d) { return d.module == ModuleId(21); });
+    ASSERT_NE(end, detections.end());
+    end->pixel.y() += 300;
+    EXPECT_FALSE(linkSeparations(world.measurements, graph, none, 2.2, 2).back());
 }
 
 TEST(LayOutSkin, FindsPatchesAndTellsACableByItsRotation) {

@@ -61,8 +61,8 @@ struct AdjustmentOptions {
     double lossBegins = 0;
     bool calibrateAccelerometers = true;
     int maxIterations = 100;
-    /// Where the cost changes relatively by less, the solution stands. Where another adjustment follows that starts from
-    /// it, more is enough.
+    /// Where the cost changes relatively by less, the solution stands. Where another adjustment follows that starts
+    /// from it, more is enough.
     double tolerance = 1e-9;
 
     [[nodiscard]] bool validate() const;

@@ -56,6 +56,8 @@ int runReproduce(const ReproduceArguments& arguments) {
     }
     if (study.cancelled)
         return badInput("interrupted");
+    if (study.rows.empty())
+        return badInput(fmt::format("--only: no experiment has \"{}\" in its name", arguments.study.only));
     fmt::print("Mean of the quantity (rms of its error) over {} simulated worlds, {:g} px of pixel noise.\n\n{}",
                arguments.study.trials, arguments.study.pixelNoise, studyTable(study));
     if (!arguments.json.empty()) {
@@ -75,6 +77,7 @@ void addReproducePaperCommand(CommandLine& line) {
     command->add_option("--trials", arguments->study.trials, "Simulated worlds per experiment")
         ->check(CLI::Range(1, 100'000))
         ->capture_default_str();
+    command->add_option("--only", arguments->study.only, "Only experiments whose name has this in it: 'Table I'");
     command->add_option("--json", arguments->json, "Also write the figures to a file");
     command->callback([&line, arguments] { line.run = [arguments] { return runReproduce(*arguments); }; });
 }

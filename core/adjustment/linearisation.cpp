@@ -34,7 +34,8 @@ std::optional<std::array<Eigen::Index, 6>> Linearisation::columnsOf(const PoseBl
     return std::array{q->second, q->second + 1, q->second + 2, t->second, t->second + 1, t->second + 2};
 }
 
-bool linearise(AdjustmentProblem& problem, const AdjustmentOptions& options, Linearisation& result) {
+bool linearise(AdjustmentProblem& problem, const AdjustmentOptions& options, Linearisation& result,
+               const RunContext& context) {
     ceres::Problem::EvaluateOptions evaluate;
     evaluate.apply_loss_function = false;
     // Columns in the order in which the residuals first need them: Ceres lists its blocks by address, which would round
@@ -64,6 +65,8 @@ bool linearise(AdjustmentProblem& problem, const AdjustmentOptions& options, Lin
     ceres::CRSMatrix crs;
     if (!problem.ceres().Evaluate(evaluate, nullptr, &residuals, nullptr, &crs))
         return false;
+    if (context.isCancelled())
+        return false;
     result.residuals = Eigen::Map<const Eigen::VectorXd>(residuals.data(), rows);
     result.J = Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
         crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()), crs.rows.data(), crs.cols.data(),
@@ -75,6 +78,8 @@ bool linearise(AdjustmentProblem& problem, const AdjustmentOptions& options, Lin
     }
     const Eigen::SparseMatrix<double> H =
         result.J.transpose() * Eigen::SparseMatrix<double>(weights.asDiagonal() * result.J);
+    if (context.isCancelled())
+        return false;
     result.factor.compute(H);
     return result.factor.info() == Eigen::Success && !isSingular(result.factor, H);
 }

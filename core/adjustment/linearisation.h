@@ -38,7 +38,8 @@ inline constexpr double tangentFactor(Eigen::Index axis) {
     return axis % 6 < 3 ? 2.0 : 1.0;
 }
 
-/// False where the data do not fix all unknowns.
-[[nodiscard]] bool linearise(AdjustmentProblem& problem, const AdjustmentOptions& options, Linearisation& result);
+/// False where the data do not fix all unknowns, or cancelled.
+[[nodiscard]] bool linearise(AdjustmentProblem& problem, const AdjustmentOptions& options, Linearisation& result,
+                             const RunContext& context = {});
 
 }  // namespace skincal

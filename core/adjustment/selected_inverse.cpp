@@ -6,7 +6,7 @@
 
 namespace skincal {
 
-SelectedInverse::SelectedInverse(const SparseCholesky& factor)
+SelectedInverse::SelectedInverse(const SparseCholesky& factor, const RunContext& context)
     : position_(factor.permutationP().indices()), lower_(factor.matrixL()) {
     const Eigen::Index n = lower_.cols();
     if (position_.size() == 0) {
@@ -23,7 +23,10 @@ SelectedInverse::SelectedInverse(const SparseCholesky& factor)
     std::vector<double> l;
     std::vector<double> sum;
     std::vector<int> slot(static_cast<std::size_t>(n), -1);
+    constexpr Eigen::Index kColumnsBetweenPolls = 1024;
     for (Eigen::Index j = n - 1; j >= 0; --j) {
+        if (j % kColumnsBetweenPolls == 0 && context.isCancelled())
+            return;
         const int begin = first[j];
         const int end = first[j + 1];
         const double diagonal = value[begin];

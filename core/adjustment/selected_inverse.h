@@ -3,6 +3,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include "core/geometry/run_context.h"
+
 namespace skincal {
 
 using SparseCholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>>;
@@ -16,7 +18,8 @@ using SparseCholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::
 class SelectedInverse {
   public:
     /// @param factor  factorised successfully.
-    explicit SelectedInverse(const SparseCholesky& factor);
+    /// @param context  polled; what was cancelled has wrong entries.
+    explicit SelectedInverse(const SparseCholesky& factor, const RunContext& context = {});
 
     /// Z_ij in the order of A. Throws std::out_of_range outside the pattern.
     [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const;

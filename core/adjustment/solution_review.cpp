@@ -63,6 +63,7 @@ MeasurementReview reviewOf(const Linearisation& linear, const LinearisedBlock& b
 }
 
 const tl::unexpected<CalibrationError> kDegenerate(CalibrationError{ErrorCode::DegeneratePoints, {}});
+const tl::unexpected<CalibrationError> kCancelled(CalibrationError{ErrorCode::Cancelled, {}});
 
 std::optional<Matrix6d> covarianceOf(AdjustmentProblem& problem, std::size_t u, const Linearisation& linear,
                                      const SelectedInverse& inverse) {
@@ -90,14 +91,23 @@ double VarianceComponent::factor(double n, double ratio) const {
 }
 
 tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentInput& input, const BodyState& state,
-                                                              const Gauge& gauge, const AdjustmentOptions& options) {
+                                                              const Gauge& gauge, const AdjustmentOptions& options,
+                                                              const RunContext& context) {
     AdjustmentProblem::requireConsistent(input, state, options);
     const BodyState complete = AdjustmentProblem::withUpDirections(input, state);
     AdjustmentProblem problem(input, complete, options);
     Linearisation linear;
-    if (!problem.fix(gauge) || !linearise(problem, options, linear))
+    if (!problem.fix(gauge))
         return kDegenerate;
-    const SelectedInverse inverse(linear.factor);
+    if (context.isCancelled())
+        return kCancelled;
+    const bool isFixed = linearise(problem, options, linear, context);
+    if (context.isCancelled())
+        return kCancelled;
+    if (!isFixed)
+        return kDegenerate;
+    const SelectedInverse inverse(linear.factor, context);
+    const auto goOn = [&](std::size_t) { return !context.isCancelled(); };
 
     SolutionReview result;
     result.pixels.resize(input.pixels.size());
@@ -108,8 +118,10 @@ tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentIn
     std::array<VarianceComponent, kMeasurementKinds.size()> sums{};
     constexpr std::size_t kChunk = 256;
     std::vector<MeasurementReview> reviews(linear.blocks.size());
-    forEachInParallel(reviews.size(), kChunk,
-                      [&](std::size_t i) { reviews[i] = reviewOf(linear, linear.blocks[i], inverse); });
+    forEachInParallel(
+        reviews.size(), kChunk, [&](std::size_t i) { reviews[i] = reviewOf(linear, linear.blocks[i], inverse); }, goOn);
+    if (context.isCancelled())
+        return kCancelled;
     for (std::size_t i = 0; i < reviews.size(); ++i) {
         const LinearisedBlock& block = linear.blocks[i];
         const MeasurementReview& own = reviews[i];
@@ -125,10 +137,13 @@ tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentIn
     }
     result.noise = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]};
     result.covariances.resize(state.T_r_u.size());
-    forEachInParallel(state.T_r_u.size(), kChunk, [&](std::size_t u) {
+    const auto addCovariance = [&](std::size_t u) {
         if (state.T_r_u[u])
             result.covariances[u] = covarianceOf(problem, u, linear, inverse);
-    });
+    };
+    forEachInParallel(state.T_r_u.size(), kChunk, addCovariance, goOn);
+    if (context.isCancelled())
+        return kCancelled;
     return result;
 }
 

@@ -54,10 +54,11 @@ struct SolutionReview {
 
 /// Reviews the solution `state`, in time and memory linear in the size of the body: all covariances that are needed
 /// belong to unknowns that some measurement ties together (SelectedInverse).
-/// Fails with DegeneratePoints where the data do not fix all unknowns.
+/// Fails with DegeneratePoints where the data do not fix all unknowns, and with Cancelled.
 /// Ref: Baarda, A testing procedure for use in geodetic networks, 1968; Foerstner, ZfV 104, 1979.
 [[nodiscard]] tl::expected<SolutionReview, CalibrationError> reviewSolution(const AdjustmentInput& input,
                                                                             const BodyState& state, const Gauge& gauge,
-                                                                            const AdjustmentOptions& options);
+                                                                            const AdjustmentOptions& options,
+                                                                            const RunContext& context = {});
 
 }  // namespace skincal

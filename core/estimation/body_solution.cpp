@@ -139,6 +139,8 @@ void anchorAtFirstView(BodySolution& solution) {
                 T = T_v_r * *T;
         }
     }
+    for (ViewAlternative& alternative : solution.alternatives)
+        alternative.T_r_v = T_v_r * alternative.T_r_v;
     state.up_r.clear();
 }
 

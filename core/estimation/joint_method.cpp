@@ -7,6 +7,7 @@
 
 #include "core/estimation/alternatives.h"
 #include "core/estimation/noise_findings.h"
+#include "core/estimation/stage_clock.h"
 #include "core/estimation/wrong_links.h"
 
 namespace skincal {
@@ -41,6 +42,40 @@ SturdyMethodOptions startOptions(const JointMethodOptions& options) {
     return start;
 }
 
+/// Refines, and takes out suspects until none is left.
+tl::expected<void, CalibrationError> refineAndTakeOut(BodySolution& solution, SolutionHistory& history,
+                                                      const JointMethodOptions& options, const RunContext& context) {
+    for (int round = 0;; ++round) {
+        auto review = refineJointly(solution, options.refinement, context);
+        if (!review)
+            return tl::unexpected(review.error());
+        if (!*review)
+            return {};
+        solution.estimate.covariances = (*review)->covariances;
+        if (round == options.maxTakeOuts)
+            return {};
+        if (!takeOutSuspects(solution, usedMeasurements(solution), **review, history, options.suspects))
+            return {};
+    }
+}
+
+/// What the sturdy method's weights said of views that could stand in two places, said again by the weights that the
+/// residuals gave. @return whether a view stands elsewhere now.
+tl::expected<bool, CalibrationError> settleViewsAgain(BodySolution& solution, const RunContext& context) {
+    if (solution.alternatives.empty())
+        return false;
+    StageClock clock("views that could stand elsewhere");
+    auto settled =
+        settleViews(usedMeasurements(solution), solution.solved, solution.alternatives, solution.weights, context);
+    if (!settled)
+        return tl::unexpected(settled.error());
+    solution.estimate.stages.push_back(clock.stop());
+    solution.solved = std::move(settled->state);
+    solution.alternatives = std::move(settled->alternatives);
+    solution.estimate.undecidedViews = std::move(settled->undecided);
+    return settled->changed;
+}
+
 /// One solution with the links as they are known, suspects taken out.
 tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measurements, const GravityTable& gravity,
                                                        SolutionHistory& history, const JointMethodOptions& options,
@@ -53,17 +88,15 @@ tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measu
         return solution;
     startWeights(*solution, options);
     dropWhatNothingHolds(*solution);
-    for (int round = 0;; ++round) {
-        auto review = refineJointly(*solution, options.refinement, context);
-        if (!review)
-            return tl::unexpected(review.error());
-        if (!*review)
-            break;
-        solution->estimate.covariances = (*review)->covariances;
-        if (round == options.maxTakeOuts)
-            break;
-        if (!takeOutSuspects(*solution, usedMeasurements(*solution), **review, history, options.suspects))
-            break;
+    if (const auto refined = refineAndTakeOut(*solution, history, options, context); !refined)
+        return tl::unexpected(refined.error());
+    const auto moved = settleViewsAgain(*solution, context);
+    if (!moved)
+        return tl::unexpected(moved.error());
+    if (*moved) {
+        anchorAtFirstView(*solution);
+        if (const auto refined = refineAndTakeOut(*solution, history, options, context); !refined)
+            return tl::unexpected(refined.error());
     }
     noteWeights(*solution);
     return solution;

@@ -126,9 +126,9 @@ tl::expected<std::optional<SolutionReview>, CalibrationError> refineJointly(Body
         if (!took)
             return tl::unexpected(took.error());
         iterations += *took;
-        auto found = reviewSolution(used, solution.solved, solution.gauge, solution.weights);
-        if (context.isCancelled())
-            return tl::unexpected(CalibrationError{ErrorCode::Cancelled, {}});
+        auto found = reviewSolution(used, solution.solved, solution.gauge, solution.weights, context);
+        if (!found && found.error().code == ErrorCode::Cancelled)
+            return tl::unexpected(found.error());
         if (!found)
             break;
         review = std::move(*found);

@@ -96,6 +96,7 @@ tl::expected<BodySolution, CalibrationError> solveRound(const Measurements& meas
         if (!settled)
             return tl::unexpected(settled.error());
         solution.solved = std::move(settled->state);
+        solution.alternatives = std::move(settled->alternatives);
         estimate.undecidedViews = std::move(settled->undecided);
     }
     estimate.stages.push_back(clock.stop());

@@ -7,15 +7,17 @@
 namespace skincal {
 namespace {
 
-/// Costs nearer than this (in log likelihood) leave the choice open.
-constexpr double kDecisive = 3.0;
+/// Costs nearer than this (in log likelihood) leave the choice open: odds of 400, as weights come from few residuals.
+constexpr double kDecisive = 6.0;
+/// And farther than this settle it with any weights: noise of 0.3 px taken for 0.03 px makes a cost a hundredfold.
+constexpr double kSettled = 300.0;
 
 }  // namespace
 
 tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& input, BodyState start,
                                                          const std::vector<ViewAlternative>& alternatives,
                                                          const AdjustmentOptions& options, const RunContext& context) {
-    SettledViews settled{std::move(start), {}};
+    SettledViews settled{std::move(start), {}, {}, false};
     std::set<std::size_t> undecided;
     const auto& modules = settled.state.T_r_u;
     const auto first = std::find_if(modules.begin(), modules.end(), [](const auto& T) { return T.has_value(); });
@@ -29,6 +31,9 @@ tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& 
     if (!best && best.error().code == ErrorCode::Cancelled)
         return tl::unexpected(best.error());
     for (const ViewAlternative& alternative : alternatives) {
+        const auto& standing = settled.state.T_r_v[alternative.view];
+        if (!standing)
+            continue;
         BodyState other = settled.state;
         other.T_r_v[alternative.view] = alternative.T_r_v;
         auto result = adjusted(other);
@@ -36,10 +41,15 @@ tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& 
             return tl::unexpected(result.error());
         if (!result)
             continue;
-        if (best && std::abs(result->summary.finalCost - best->summary.finalCost) < kDecisive)
+        const double more = best ? result->summary.finalCost - best->summary.finalCost : 0;
+        if (best && std::abs(more) < kDecisive)
             undecided.insert(alternative.view);
-        if (!best || result->summary.finalCost < best->summary.finalCost) {
+        const bool better = !best || more < 0;
+        if (std::abs(more) < kSettled)
+            settled.alternatives.push_back(better ? ViewAlternative{alternative.view, *standing} : alternative);
+        if (better) {
             settled.state = std::move(other);
+            settled.changed = true;
             best = std::move(result);
         }
     }

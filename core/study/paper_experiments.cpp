@@ -32,8 +32,10 @@ struct Experiment {
     std::function<double(const World&, const Poses& T_r_v, const Poses& T_r_u)> read;
     bool needViews = true;
     bool hasBound = true;
-    /// Where the quantity is the size of an error, the error itself: its bound is that of the quantity's rms.
-    std::function<Eigen::VectorXd(const World&, const Poses& T_r_u)> error{};
+    /// What the bound is computed of: a vector, of which the quantity is the length or comes close to it. Where there
+    /// is none, the quantity.
+    std::function<Eigen::VectorXd(const World&, const Poses& T_r_v, const Poses& T_r_u)> vector{};
+    BoundOn boundOn = BoundOn::Views;
 };
 
 class Tally {
@@ -59,6 +61,22 @@ class Tally {
     double squares_ = 0;
 };
 
+/// Our body; nothing where a picture of it could be of two poses as well: the program says so, and that is no result.
+std::optional<BodyModel> decidedBody(const Measurements& measurements) {
+    const GravityTable gravity(measurements.skin, measurements.gravity);
+    const auto solution = solveJointly(measurements, gravity);
+    if (!solution || !solution->estimate.undecidedViews.empty())
+        return std::nullopt;
+    return describeSolution(*solution, {});
+}
+
+std::optional<BodyModel> paperBody(const Measurements& measurements) {
+    auto body = calibratePaper(measurements);
+    if (!body)
+        return std::nullopt;
+    return *std::move(body);
+}
+
 ExperimentRow run(const Experiment& experiment, const PaperStudyOptions& options, const RunContext& context) {
     ExperimentRow row{experiment.name,
                       experiment.quantity,
@@ -76,7 +94,7 @@ ExperimentRow run(const Experiment& experiment, const PaperStudyOptions& options
         const World world = experiment.makeWorld(static_cast<std::uint64_t>(trial) + 1);
         const Measurements measurements = measurementsOf(world);
         for (const bool ourTurn : {false, true}) {
-            const auto body = ourTurn ? calibrateJoint(measurements) : calibratePaper(measurements);
+            const auto body = ourTurn ? decidedBody(measurements) : paperBody(measurements);
             const auto poses = body ? posesOf(*body, experiment.needViews) : std::nullopt;
             if (poses)
                 (ourTurn ? ours : paper).add(experiment.read(world, poses->T_r_v, poses->T_r_u), experiment.truth);
@@ -84,13 +102,14 @@ ExperimentRow run(const Experiment& experiment, const PaperStudyOptions& options
         if (!experiment.hasBound)
             continue;
         const auto quantity = [&](const Poses& T_r_v, const Poses& T_r_u) -> Eigen::VectorXd {
-            if (experiment.error)
-                return experiment.error(world, T_r_u);
+            if (experiment.vector)
+                return experiment.vector(world, T_r_v, T_r_u);
             return Eigen::VectorXd::Constant(1, experiment.read(world, T_r_v, T_r_u));
         };
-        const bool ofViews = !experiment.error && !world.T_r_v.empty();
-        if (const auto bound = boundOf(world, measurements, ofViews ? BoundOn::Views : BoundOn::Modules, quantity)) {
-            boundSquares += *bound * *bound;
+        const Poses T_r_v(world.T_r_v.begin(), world.T_r_v.end());
+        const Poses T_r_u(world.T_r_u.begin(), world.T_r_u.end());
+        if (const auto bound = boundOf(world, measurements, experiment.boundOn, quantity)) {
+            boundSquares += meanSquareOfLength(quantity(T_r_v, T_r_u), *bound);
             ++bounds;
         }
     }
@@ -119,12 +138,34 @@ World movedPatch(const PatchPlan& plan, double distance, const Vector3d& transla
     return world;
 }
 
-double relativeTranslation(const World&, const Poses& T_r_v, const Poses& T_r_u) {
-    return ((T_r_v[1].inverse() * T_r_u[0]).translation() - (T_r_v[0].inverse() * T_r_u[0]).translation()).norm();
+/// How the patch moved between the two views, in the camera's frame.
+Eigen::VectorXd translationBetween(const World&, const Poses& T_r_v, const Poses& T_r_u) {
+    return (T_r_v[1].inverse() * T_r_u[0]).translation() - (T_r_v[0].inverse() * T_r_u[0]).translation();
 }
 
-double relativeRotation(const World&, const Poses& T_r_v, const Poses&) {
-    return rotationAngle(T_r_v[1].linear().transpose() * T_r_v[0].linear());
+Eigen::VectorXd rotationBetween(const World&, const Poses& T_r_v, const Poses&) {
+    return so3Log(T_r_v[1].linear().transpose() * T_r_v[0].linear());
+}
+
+using VectorOfPoses = Eigen::VectorXd (*)(const World&, const Poses& T_r_v, const Poses& T_r_u);
+
+/// Two views of one patch, and a quantity that is the length of a vector.
+Experiment motionExperiment(std::string name, std::string quantity, VectorOfPoses vector, double truth,
+                            std::optional<double> printed, std::function<World(std::uint64_t seed)> makeWorld) {
+    const bool isShift = vector == translationBetween;
+    Experiment result{std::move(name),
+                      std::move(quantity),
+                      isShift ? "mm" : "rad",
+                      isShift ? 1e3 : 1,
+                      truth,
+                      printed,
+                      std::move(makeWorld),
+                      {}};
+    result.read = [vector](const World& world, const Poses& T_r_v, const Poses& T_r_u) {
+        return vector(world, T_r_v, T_r_u).norm();
+    };
+    result.vector = vector;
+    return result;
 }
 
 void addShapeExperiments(std::vector<Experiment>& all, double noise) {
@@ -141,9 +182,18 @@ void addShapeExperiments(std::vector<Experiment>& all, double noise) {
         const Vector3d axis = Eigen::SelfAdjointEigenSolver<Matrix3d>(normals).eigenvectors().col(0);
         return fitCylinder(origins, axis, kRadius);
     };
-    all.push_back({"cylinder of 50.1 mm, 19 modules", "radius", "mm", 1e3, kRadius, 49.80, cylinderWorld,
-                   [=](const World&, const Poses&, const Poses& T_r_u) { return cylinderOf(T_r_u).radius; }, false,
-                   true});
+    all.push_back({"cylinder of 50.1 mm, 19 modules",
+                   "radius",
+                   "mm",
+                   1e3,
+                   kRadius,
+                   49.80,
+                   cylinderWorld,
+                   [=](const World&, const Poses&, const Poses& T_r_u) { return cylinderOf(T_r_u).radius; },
+                   false,
+                   true,
+                   {},
+                   BoundOn::Modules});
     all.push_back({"cylinder of 50.1 mm, 19 modules", "rms from the cylinder", "mm", 1e3, 0, 1.6, cylinderWorld,
                    [=](const World&, const Poses&, const Poses& T_r_u) { return cylinderOf(T_r_u).rms; }, false,
                    false});
@@ -208,17 +258,19 @@ void addPoseExperiments(std::vector<Experiment>& all, double noise) {
         };
         const Vector3d none = Vector3d::Zero();
         all.push_back(
-            {name, "shift along z", "mm", 1e3, kShift, cell.z, world({0, 0, kShift}, none), relativeTranslation});
+            motionExperiment(name, "shift along z", translationBetween, kShift, cell.z, world({0, 0, kShift}, none)));
         all.push_back(
-            {name, "shift along y", "mm", 1e3, kShift, cell.y, world({0, kShift, 0}, none), relativeTranslation});
-        all.push_back({name, "turn about z", "rad", 1, kTurn, cell.rz, world(none, {0, 0, kTurn}), relativeRotation});
-        all.push_back({name, "turn about y", "rad", 1, kTurn, cell.ry, world(none, {0, kTurn, 0}), relativeRotation});
+            motionExperiment(name, "shift along y", translationBetween, kShift, cell.y, world({0, kShift, 0}, none)));
+        all.push_back(
+            motionExperiment(name, "turn about z", rotationBetween, kTurn, cell.rz, world(none, {0, 0, kTurn})));
+        all.push_back(
+            motionExperiment(name, "turn about y", rotationBetween, kTurn, cell.ry, world(none, {0, kTurn, 0})));
     }
-    all.push_back({"7 on 40 mm at 1.0 m, the middle covered", "shift along z", "mm", 1e3, 0.020, 25.68,
-                   [noise](std::uint64_t seed) {
-                       return movedPatch(bentPatch(7, 0.040), 1.0, {0, 0, 0.020}, Vector3d::Zero(), seed, noise, 0);
-                   },
-                   relativeTranslation});
+    all.push_back(motionExperiment(
+        "7 on 40 mm at 1.0 m, the middle covered", "shift along z", translationBetween, 0.020, 25.68,
+        [noise](std::uint64_t seed) {
+            return movedPatch(bentPatch(7, 0.040), 1.0, {0, 0, 0.020}, Vector3d::Zero(), seed, noise, 0);
+        }));
 }
 
 /// Vectors between the ports of the one patch and the ports of the other that they really meet, though no link joins
@@ -263,10 +315,11 @@ void addBodyExperiments(std::vector<Experiment>& all, double noise) {
                        return portGaps(world, T_r_u).colwise().norm().mean();
                    },
                    true, true,
-                   [](const World& world, const Poses& T_r_u) -> Eigen::VectorXd {
+                   [](const World& world, const Poses&, const Poses& T_r_u) -> Eigen::VectorXd {
                        const Eigen::Matrix3Xd gaps = portGaps(world, T_r_u);
                        return gaps.reshaped() / std::sqrt(static_cast<double>(gaps.cols()));
-                   }});
+                   },
+                   BoundOn::Modules});
 
     all.push_back({"shoe sole of 23, six covered, 0.6 m", "distance to the camera", "mm", 1e3, 0.6, std::nullopt,
                    [noise](std::uint64_t seed) {
@@ -331,6 +384,8 @@ PaperStudy runPaperStudy(const PaperStudyOptions& options, const RunContext& con
     addShapeExperiments(experiments, options.pixelNoise);
     addPoseExperiments(experiments, options.pixelNoise);
     addBodyExperiments(experiments, options.pixelNoise);
+    const auto isLeftOut = [&](const std::string& name) { return name.find(options.only) == std::string::npos; };
+    std::erase_if(experiments, [&](const Experiment& experiment) { return isLeftOut(experiment.name); });
     PaperStudy study{options, {}, false};
     for (std::size_t i = 0; i < experiments.size(); ++i) {
         context.report(experiments[i].name, static_cast<double>(i) / static_cast<double>(experiments.size()));
@@ -340,7 +395,8 @@ PaperStudy runPaperStudy(const PaperStudyOptions& options, const RunContext& con
             return study;
         }
     }
-    study.rows.push_back(timeRow());
+    if (ExperimentRow row = timeRow(); !isLeftOut(row.experiment))
+        study.rows.push_back(std::move(row));
     return study;
 }
 

@@ -13,13 +13,16 @@ namespace skincal {
 struct PaperStudyOptions {
     int trials = 50;           ///< worlds per experiment, seeds 1, 2, …
     double pixelNoise = 0.05;  ///< px per axis, the same for both methods
+    std::string only{};        ///< experiments whose name has this in it; all where it is empty
 
     [[nodiscard]] bool validate() const { return trials > 0 && trials <= 100'000 && pixelNoise > 0; }
 };
 
 /// What one method reached over all trials.
 struct MethodOutcome {
-    int solved = 0;              ///< trials in which it gave a result
+    /// Trials in which it gave a result. Ours gives none where a picture of a flat patch could be of its mirror pose as
+    /// well: it says so, and the paper's does not.
+    int solved = 0;
     std::optional<double> mean;  ///< of the quantity
     std::optional<double> rms;   ///< of its error
 };
@@ -32,7 +35,9 @@ struct ExperimentRow {
     std::optional<double> printed;  ///< the paper's figure
     MethodOutcome paper;
     MethodOutcome ours;
-    std::optional<double> bound;  ///< Cramer-Rao bound of the error, rms over the trials
+    /// The rms error of an estimate that reaches the Cramer-Rao bound, over all trials. Lengths of vectors are biased
+    /// even then (see meanSquareOfLength).
+    std::optional<double> bound;
 };
 
 struct PaperStudy {

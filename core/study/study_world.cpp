@@ -2,10 +2,12 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "core/adjustment/pose_covariance.h"
 #include "core/estimation/patch_shape.h"
+#include "core/geometry/random.h"
 
 namespace skincal {
 namespace {
@@ -96,8 +98,8 @@ Measurements measurementsOf(const World& world) {
     return {world.skin, simulateGravity(world), world.scenario.camera, simulateDetections(world)};
 }
 
-std::optional<double> boundOf(const World& world, const Measurements& measurements, BoundOn which,
-                              const PoseFunction& function) {
+std::optional<Eigen::MatrixXd> boundOf(const World& world, const Measurements& measurements, BoundOn which,
+                                       const PoseFunction& function) {
     const GravityTable gravity(measurements.skin, measurements.gravity);
     const AdjustmentInput input = inputOf(world, measurements, gravity);
     BodyState truth;
@@ -138,7 +140,25 @@ std::optional<double> boundOf(const World& world, const Measurements& measuremen
             J.col(static_cast<Eigen::Index>(6 * i) + axis) = (value[1] - value[0]) / (2 * kStep);
         }
     }
-    return std::sqrt(std::max(0.0, (J * *covariance * J.transpose()).trace()));
+    return J * *covariance * J.transpose();
+}
+
+double meanSquareOfLength(const Eigen::VectorXd& v, const Eigen::MatrixXd& covariance) {
+    if (v.norm() == 0)
+        return std::max(0.0, covariance.trace());
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+    const Eigen::MatrixXd root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+    constexpr int kDraws = 4096;
+    Random random(1, "length of a vector");
+    double squares = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+        Eigen::VectorXd e(v.size());
+        for (double& x : e)
+            x = random.normal();
+        const double error = (v + root * e).norm() - v.norm();
+        squares += error * error;
+    }
+    return squares / kDraws;
 }
 
 std::optional<BodyPoses> posesOf(const BodyModel& body, bool needViews) {

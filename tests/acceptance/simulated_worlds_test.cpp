@@ -232,7 +232,7 @@ TEST(SimulatedWorlds, CancellingStopsPictureAndNumberWork) {
 
 TEST(PaperStudy, GivesEveryRowOfThePaperWithAFiniteBound) {
     PaperStudyOptions options;
-    options.trials = 2;
+    options.trials = 4;
     const PaperStudy study = runPaperStudy(options);
     EXPECT_EQ(study.rows.size(), 33U);
     for (const ExperimentRow& row : study.rows) {
@@ -246,6 +246,24 @@ TEST(PaperStudy, GivesEveryRowOfThePaperWithAFiniteBound) {
     EXPECT_THAT(table, testing::HasSubstr("| Table I, 1.4 m, bent to 40 mm | turn about z, rad | 0.175 | 0.182 |"));
     EXPECT_THAT(table, testing::HasSubstr("| Table I, 0.6 m, flat | turn about z, rad | 0.175 | – |"))
         << "not made up where the paper's text does not tell";
+}
+
+TEST(PaperStudy, TableOneReachesTheCramerRaoBound) {
+    PaperStudyOptions options;
+    options.trials = 40;
+    options.only = "Table I";
+    const PaperStudy study = runPaperStudy(options);
+    ASSERT_EQ(study.rows.size(), 24U);
+    double logarithms = 0;
+    for (const ExperimentRow& row : study.rows) {
+        const bool isFlat = row.experiment.find("flat") != std::string::npos;
+        EXPECT_GE(row.ours.solved, isFlat ? 15 : 39) << row.experiment << ", " << row.quantity;
+        const double ratio = *row.ours.rms / *row.bound;
+        logarithms += std::log(ratio) / static_cast<double>(study.rows.size());
+        // 1.1, and three standard errors of an rms over so many trials.
+        EXPECT_LT(ratio, 1.1 * (1 + 3 / std::sqrt(2.0 * row.ours.solved))) << row.experiment << ", " << row.quantity;
+    }
+    EXPECT_LT(std::exp(logarithms), 1.05);
 }
 
 }  // namespace

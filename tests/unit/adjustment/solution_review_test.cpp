@@ -152,5 +152,24 @@ TEST(SolutionReview, WhatTheDataDoNotFixIsRefused) {
               ErrorCode::DegeneratePoints);
 }
 
+TEST(SolutionReview, StopsWhereverItIsCancelled) {
+    Random random(16, "cancelled review");
+    const NoisyWorld noisy(random, noisyOptions(), 0);
+    const Gauge gauge{{0}, {}};
+    int polls = 0;
+    int stopAt = -1;
+    RunContext context;
+    context.isCancelled = [&] { return stopAt >= 0 && polls >= stopAt ? true : (++polls, false); };
+    ASSERT_TRUE(reviewSolution(noisy.input, noisy.world.state(), gauge, plainSquares(), context));
+    const int all = polls;
+    EXPECT_GE(all, 4) << "before the factorisation, in the inverse, in the reviews and in the covariances";
+    for (stopAt = 0; stopAt < all; ++stopAt) {
+        polls = 0;
+        const auto review = reviewSolution(noisy.input, noisy.world.state(), gauge, plainSquares(), context);
+        ASSERT_FALSE(review) << stopAt;
+        EXPECT_EQ(review.error().code, ErrorCode::Cancelled);
+    }
+}
+
 }  // namespace
 }  // namespace skincal

@@ -1,0 +1,1 @@
+#include "core/camera/frame_source.h"

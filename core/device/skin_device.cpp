@@ -1,0 +1,1 @@
+#include "core/device/skin_device.h"

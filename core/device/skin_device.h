@@ -1,0 +1,74 @@
+#pragma once
+
+#include <QObject>
+#include <QString>
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "core/skin/skin.h"
+#include "core/vision/frame.h"
+
+namespace skincal {
+
+/// What the accelerometers of the modules that answered read at one time: specific force in each module's frame, m/s^2.
+struct AccelerationSample {
+    struct Reading {
+        ModuleId module;
+        Vector3d acceleration = Vector3d::Zero();
+    };
+    std::chrono::microseconds time{};  ///< of the device's clock
+    std::vector<Reading> readings;
+};
+
+/// What the skin feels at one time.
+struct TactileSample {
+    struct Reading {
+        ModuleId module;
+        float proximity = 0;                  ///< 0 nothing near, 1 touching
+        std::array<float, 3> force{};         ///< N, per force cell
+        float temperature = 0;                ///< degrees Celsius
+        std::array<float, 3> acceleration{};  ///< m/s^2, module frame
+    };
+    std::chrono::microseconds time{};
+    std::vector<Reading> readings;
+};
+
+/// A skin that can be asked: over a wire, simulated, or from a recording. Everything is asynchronous: functions return
+/// at once, what comes of them is a signal, sent from the event loop, never from inside the call. Signals may come in
+/// any order and some never (a cable can be pulled at any time); whoever waits sets a timeout.
+class SkinDevice : public QObject {
+    Q_OBJECT
+  public:
+    using QObject::QObject;
+
+    /// What it is, for people: "Simulated arm", "ttyUSB0".
+    [[nodiscard]] virtual QString name() const = 0;
+
+    /// opened() or failed() follows. Of an open device: nothing.
+    virtual void open() = 0;
+    /// closed() follows where it was open. Light, exploration and streams end.
+    virtual void close() = 0;
+    /// Asks who is there and who is linked to whom: moduleFound() for each module, then explored(), or failed().
+    virtual void explore() = 0;
+    /// accelerationArrived() at the device's own rate, from now on or no longer.
+    virtual void streamAcceleration(bool on) = 0;
+    /// tactileArrived(), likewise.
+    virtual void streamTactile(bool on) = 0;
+    /// These LEDs on and all others off; lightShown(token) follows once every module has latched it. Commands that a
+    /// newer one overtakes may never be acknowledged.
+    /// @return the token, rising with every call.
+    virtual std::uint64_t light(const std::vector<LitModule>& lit) = 0;
+
+  signals:
+    void opened();
+    void closed();
+    void failed(const QString& why);
+    void moduleFound(skincal::ModuleId module);
+    void explored(const skincal::Skin& skin);
+    void accelerationArrived(const skincal::AccelerationSample& sample);
+    void tactileArrived(const skincal::TactileSample& sample);
+    void lightShown(std::uint64_t token);
+};
+
+}  // namespace skincal

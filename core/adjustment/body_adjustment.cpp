@@ -128,7 +128,10 @@ tl::expected<AdjustmentResult, CalibrationError> adjustBody(const AdjustmentInpu
     // 1,000 modules take it 0.21 s, CHOLMOD 0.59 s, Schur complements 0.54 s (Eigen) and 0.61 s (CHOLMOD); over 10,000
     // with 60 views 4.0 s, CHOLMOD 4.5 s, Schur complements twice that, sparse and iterative alike; over 100,000 with
     // 600 views ten times what 10,000 take. One thread: sums over threads would differ from run to run.
-    solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+    // From 350,000 unknowns on Eigen's ordering may overflow (see WideOrdering).
+    constexpr int kMostForEigen = 300'000;
+    const bool isHuge = problem.ceres().NumParameters() > kMostForEigen;
+    solver.sparse_linear_algebra_library_type = isHuge ? ceres::SUITE_SPARSE : ceres::EIGEN_SPARSE;
     // Ceres' own 1e4 holds back the softest modes of a large body, which then take a step per factor of three: with 1e8
     // half as many steps reach the same minimum. Where steps fail it shrinks fast enough.
     solver.initial_trust_region_radius = 1e8;

@@ -1,10 +1,31 @@
 #include "core/adjustment/selected_inverse.h"
 
+#include <Eigen/OrderingMethods>
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
 namespace skincal {
+
+void WideOrdering::operator()(const Eigen::SparseMatrix<double>& symmetric, PermutationType& permutation) const {
+    // Of the values nothing is used.
+    using Wide = Eigen::SparseMatrix<char, Eigen::ColMajor, std::int64_t>;
+    Wide lower(symmetric.rows(), symmetric.cols());
+    lower.reserve(symmetric.nonZeros() / 2 + symmetric.cols());
+    for (Eigen::Index j = 0; j < symmetric.outerSize(); ++j) {
+        lower.startVec(j);
+        for (Eigen::SparseMatrix<double>::InnerIterator it(symmetric, j); it; ++it) {
+            if (it.row() >= j)
+                lower.insertBack(it.row(), j) = 1;
+        }
+    }
+    lower.finalize();
+    Eigen::AMDOrdering<std::int64_t>::PermutationType wide;
+    Eigen::AMDOrdering<std::int64_t>()(lower.selfadjointView<Eigen::Lower>(), wide);
+    permutation.resize(symmetric.cols());
+    permutation.indices() = wide.indices().cast<int>();
+}
 
 SelectedInverse::SelectedInverse(const SparseCholesky& factor, const RunContext& context)
     : position_(factor.permutationP().indices()), lower_(factor.matrixL()) {

@@ -7,7 +7,16 @@
 
 namespace skincal {
 
-using SparseCholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>>;
+/// Eigen's approximate minimum degree ordering in 64 bits: that of 32 adds up indices of neighbours, which overflows
+/// from some 350,000 unknowns on and then writes where it should not.
+class WideOrdering {
+  public:
+    using PermutationType = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
+    /// @param symmetric  both triangles of it.
+    void operator()(const Eigen::SparseMatrix<double>& symmetric, PermutationType& permutation) const;
+};
+
+using SparseCholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, WideOrdering>;
 
 /// Entries of the inverse of a sparse positive definite matrix where its Cholesky factor has entries, without the
 /// others:

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/procedure/machine.h"
+
+namespace skincal {
+
+/// From no skin to one whose network is known.
+struct Connection {
+    enum class Phase {
+        Disconnected,
+        Opening,    ///< the device was told to open
+        Exploring,  ///< it is open and modules report
+        Connected,  ///< the network is known
+        Lost,       ///< it was there and is not any more, or never came: `why` says
+    };
+    Phase phase = Phase::Disconnected;
+    std::size_t found = 0;  ///< modules that have reported
+    std::string why{};      ///< in Phase::Lost
+
+    friend bool operator==(const Connection&, const Connection&) = default;
+};
+
+namespace connection {
+
+struct Connect {};     ///< the operator's; in Connected: explore again
+struct Disconnect {};  ///< the operator's
+struct Opened {};
+struct Closed {};
+struct Failed {
+    std::string why;
+};
+struct ModuleFound {};
+struct Explored {};
+struct TimedOut {};  ///< nothing came for as long as StartTimer said
+
+using Event = std::variant<Connect, Disconnect, Opened, Closed, Failed, ModuleFound, Explored, TimedOut>;
+
+struct OpenDevice {
+    friend bool operator==(const OpenDevice&, const OpenDevice&) = default;
+};
+struct CloseDevice {
+    friend bool operator==(const CloseDevice&, const CloseDevice&) = default;
+};
+struct Explore {
+    friend bool operator==(const Explore&, const Explore&) = default;
+};
+
+using Effect = std::variant<OpenDevice, CloseDevice, Explore, StartTimer, StopTimer>;
+
+}  // namespace connection
+
+[[nodiscard]] Stepped<Connection, connection::Effect> step(const Connection& state, const connection::Event& event);
+
+}  // namespace skincal

@@ -1,0 +1,109 @@
+#include "core/procedure/steps.h"
+
+#include <algorithm>
+
+namespace skincal {
+namespace {
+
+/// Two poses give rotations, three tell where one of them is off.
+constexpr std::size_t kFewestPoses = 3;
+
+StepState connectState(const Progress& p) {
+    if (p.isSkinLost)
+        return {StepStatus::NeedsAttention, StepReason::SkinLost};
+    if (!p.hasSkin)
+        return {StepStatus::ToDo, StepReason::None};
+    if (p.neighbourLinks == 0 && p.modules > 1)
+        return {StepStatus::NeedsAttention, StepReason::NoNeighbours};
+    return {StepStatus::Done, StepReason::None};
+}
+
+StepState poseState(const Progress& p) {
+    if (!p.hasSkin)
+        return {StepStatus::Blocked, StepReason::NoSkin};
+    if (p.poses == 0)
+        return {StepStatus::ToDo, StepReason::NoPoses};
+    if (p.poses < kFewestPoses)
+        return {StepStatus::InProgress, StepReason::TooFewPoses};
+    if (p.arePosesAlike)
+        return {StepStatus::NeedsAttention, StepReason::PosesAlike};
+    return {StepStatus::Done, StepReason::None};
+}
+
+StepState cameraState(const Progress& p) {
+    if (p.isCameraLost)
+        return {StepStatus::NeedsAttention, StepReason::CameraLost};
+    if (!p.hasIntrinsics)
+        return p.hasPictures ? StepState{StepStatus::InProgress, StepReason::NoIntrinsics}
+                             : StepState{StepStatus::ToDo, StepReason::NoIntrinsics};
+    return {StepStatus::Done, StepReason::None};
+}
+
+StepState scanState(const Progress& p) {
+    if (!p.hasSkin)
+        return {StepStatus::Blocked, StepReason::NoSkin};
+    if (!p.hasIntrinsics)
+        return {StepStatus::Blocked, StepReason::NoIntrinsics};
+    if (p.views == 0)
+        return {StepStatus::ToDo, StepReason::NoViews};
+    return {StepStatus::Done, StepReason::None};
+}
+
+StepState viewsState(const Progress& p) {
+    if (p.views == 0)
+        return {StepStatus::Blocked, StepReason::NoViews};
+    if (!p.hasBody)
+        return {p.isSolving ? StepStatus::InProgress : StepStatus::NeedsAttention,
+                p.isSolving ? StepReason::Solving : StepReason::PatchesNotPlaced};
+    if (p.patchesPlaced < p.patches)
+        return {StepStatus::InProgress, StepReason::PatchesNotPlaced};
+    return {StepStatus::Done, StepReason::None};
+}
+
+StepState resultState(const Progress& p) {
+    if (!p.hasBody)
+        return {StepStatus::Blocked, p.isSolving ? StepReason::Solving : StepReason::NoViews};
+    if (p.isSolving)
+        return {StepStatus::InProgress, StepReason::Solving};
+    if (p.modulesPlaced == 0)
+        return {StepStatus::Blocked, StepReason::PatchesNotPlaced};
+    if (!p.isTrusted)
+        return {StepStatus::NeedsAttention, StepReason::NotTrusted};
+    if (p.modulesPlaced < p.modules)
+        return {StepStatus::InProgress, StepReason::ModulesNotPlaced};
+    return {StepStatus::Done, StepReason::None};
+}
+
+StepState exportState(const Progress& p) {
+    if (!p.hasBody || p.modulesPlaced == 0)
+        return {StepStatus::Blocked, StepReason::PatchesNotPlaced};
+    if (!p.isExported)
+        return {StepStatus::ToDo, StepReason::None};
+    if (!p.isExportNewest)
+        return {StepStatus::NeedsAttention, StepReason::Changed};
+    return {StepStatus::Done, StepReason::None};
+}
+
+StepState demoState(const Progress& p) {
+    if (!p.hasBody || p.modulesPlaced == 0)
+        return {StepStatus::Blocked, StepReason::PatchesNotPlaced};
+    if (!p.hasSkin || p.isSkinLost)
+        return {StepStatus::Blocked, StepReason::NoSkin};
+    return {StepStatus::ToDo, StepReason::None};
+}
+
+}  // namespace
+
+StepStates stepStates(const Progress& p) {
+    return {connectState(p), poseState(p),   cameraState(p), scanState(p),
+            viewsState(p),   resultState(p), exportState(p), demoState(p)};
+}
+
+Step nextStep(const StepStates& states) {
+    const auto open = std::find_if(states.begin(), states.end(), [](const StepState& state) {
+        return state.status != StepStatus::Done && state.status != StepStatus::Blocked;
+    });
+    return open == states.end() ? Step::Export : kSteps.at(static_cast<std::size_t>(open - states.begin()));
+}
+
+}  // namespace skincal

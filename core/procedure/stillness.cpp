@@ -1,0 +1,121 @@
+#include "core/procedure/stillness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "core/geometry/se3.h"
+
+namespace skincal {
+namespace {
+
+/// Sums of one module's readings.
+struct Moments {
+    int count = 0;
+    Vector3d sum = Vector3d::Zero();
+    double squares = 0;
+
+    void add(const Vector3d& a) {
+        ++count;
+        sum += a;
+        squares += a.squaredNorm();
+    }
+    /// Per axis.
+    [[nodiscard]] double variance() const {
+        const double n = count;
+        return std::max(0.0, (squares - sum.squaredNorm() / n) / (3 * (n - 1)));
+    }
+};
+
+}  // namespace
+
+StillnessMeter::StillnessMeter(std::vector<ModuleId> modules, const StillnessOptions& options)
+    : modules_(std::move(modules)), options_(options) {
+    if (!options.validate())
+        throw std::logic_error("StillnessOptions out of range");
+}
+
+void StillnessMeter::add(std::chrono::microseconds time, std::span<const std::optional<Vector3d>> acceleration) {
+    if (acceleration.size() != modules_.size())
+        throw std::logic_error("a sample has one entry per module");
+    if (!samples_.empty() && time <= samples_.back().time)
+        clear();  // the device's clock began anew
+    samples_.push_back({time, {acceleration.begin(), acceleration.end()}});
+    while (samples_.front().time < time - kKept)
+        samples_.pop_front();
+}
+
+void StillnessMeter::clear() {
+    samples_.clear();
+}
+
+std::optional<double> StillnessMeter::movement() const {
+    if (samples_.empty())
+        return std::nullopt;
+    const auto from = samples_.back().time - options_.window;
+    if (samples_.back().time - samples_.front().time < options_.window / 2)
+        return std::nullopt;
+    std::vector<Moments> moments(modules_.size());
+    for (auto sample = samples_.rbegin(); sample != samples_.rend() && sample->time >= from; ++sample) {
+        for (std::size_t u = 0; u < modules_.size(); ++u) {
+            if (sample->acceleration[u])
+                moments[u].add(*sample->acceleration[u]);
+        }
+    }
+    double sum = 0;
+    int count = 0;
+    for (const Moments& of : moments) {
+        if (of.count < 2)
+            continue;
+        sum += of.variance();
+        ++count;
+    }
+    if (count == 0)
+        return std::nullopt;
+    return std::sqrt(sum / count);
+}
+
+bool StillnessMeter::isAtRest() const {
+    const auto moves = movement();
+    return moves && *moves < options_.restsBelow;
+}
+
+std::vector<GravityReading> StillnessMeter::meansSince(std::chrono::microseconds from, int pose) const {
+    std::vector<GravityReading> readings;
+    for (std::size_t u = 0; u < modules_.size(); ++u) {
+        Moments of;
+        for (const Sample& sample : samples_) {
+            if (sample.time >= from && sample.acceleration[u])
+                of.add(*sample.acceleration[u]);
+        }
+        if (of.count < 2)
+            continue;
+        const double n = of.count;
+        readings.push_back({pose, modules_[u], of.sum / n, std::sqrt(of.variance() / n), of.count});
+    }
+    return readings;
+}
+
+double angleToNearestPose(std::span<const GravityReading> captured, std::span<const GravityReading> now) {
+    std::map<ModuleId, Vector3d> current;
+    for (const GravityReading& reading : now)
+        current[reading.module] = reading.acceleration;
+    std::map<int, std::vector<double>> angles;
+    for (const GravityReading& reading : captured) {
+        const auto found = current.find(reading.module);
+        if (found == current.end() || reading.acceleration.norm() == 0 || found->second.norm() == 0)
+            continue;
+        const double cosine = reading.acceleration.normalized().dot(found->second.normalized());
+        angles[reading.pose].push_back(std::acos(std::clamp(cosine, -1.0, 1.0)));
+    }
+    double nearest = 180 * kDegree;
+    for (auto& [pose, of] : angles) {
+        const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
+        std::nth_element(of.begin(), middle, of.end());
+        nearest = std::min(nearest, *middle);
+    }
+    return nearest;
+}
+
+}  // namespace skincal

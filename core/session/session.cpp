@@ -1,0 +1,165 @@
+#include "core/session/session.h"
+
+#include <QTimer>
+#include <QUndoCommand>
+#include <algorithm>
+
+namespace skincal {
+
+/// Swaps two sets of decisions, back and forth.
+class DecideCommand : public QUndoCommand {
+  public:
+    DecideCommand(Session& session, Decisions other, const QString& text)
+        : QUndoCommand(text), session_(session), other_(std::move(other)) {}
+
+    void undo() override { session_.swapDecisions(other_); }
+    void redo() override { session_.swapDecisions(other_); }
+
+  private:
+    Session& session_;
+    Decisions other_;
+};
+
+Session::Session(QObject* parent) : QObject(parent), undoStack_(this), solver_(this) {
+    connect(&solver_, &Solver::solved, this, [this](std::shared_ptr<const Solution> solution) {
+        failure_.clear();
+        solution_ = std::move(solution);
+        emit solutionChanged();
+    });
+    connect(&solver_, &Solver::failed, this, [this](const QString& why, std::uint64_t) {
+        failure_ = why;
+        emit solutionChanged();
+    });
+    connect(&solver_, &Solver::guided, this, [this](std::shared_ptr<const Guidance> guidance) {
+        guidance_ = std::move(guidance);
+        emit guidanceChanged();
+    });
+    connect(&solver_, &Solver::busyChanged, this, &Session::solvingChanged);
+    connect(&solver_, &Solver::progressed, this, &Session::solvingProgressed);
+}
+
+const ScannedView* Session::findView(const std::string& name) const {
+    const auto found = std::find_if(measured_.views.begin(), measured_.views.end(),
+                                    [&](const ScannedView& view) { return view.name == name; });
+    return found == measured_.views.end() ? nullptr : &*found;
+}
+
+void Session::adoptSkin(Skin skin) {
+    const auto idsOf = [](const Skin& of) {
+        std::set<ModuleId> ids;
+        for (const SkinModule& module : of.modules)
+            ids.insert(module.id);
+        return ids;
+    };
+    const bool isOther = idsOf(skin) != idsOf(measured_.skin);
+    measured_.skin = std::move(skin);
+    if (isOther) {
+        measured_.gravity.clear();
+        measured_.views.clear();
+        decisions_.links.clear();
+        decisions_.detections.clear();
+        decisions_.droppedPoses.clear();
+        decisions_.droppedViews.clear();
+        undoStack_.clear();
+        solver_.reset();
+        solution_.reset();
+        guidance_.reset();
+        emit solutionChanged();
+        emit posesChanged();
+        emit viewsChanged();
+    }
+    emit skinChanged();
+    changed(false);
+}
+
+int Session::addPose(std::vector<GravityReading> readings) {
+    int pose = 0;
+    for (const GravityReading& reading : measured_.gravity)
+        pose = std::max(pose, reading.pose + 1);
+    for (GravityReading& reading : readings) {
+        reading.pose = pose;
+        measured_.gravity.push_back(reading);
+    }
+    emit posesChanged();
+    changed(true);
+    return pose;
+}
+
+std::string Session::addView(ScannedView view) {
+    for (std::size_t number = measured_.views.size();; ++number) {
+        view.name = "view" + std::to_string(number);
+        if (findView(view.name) == nullptr)
+            break;
+    }
+    view.decoded.name = view.name;
+    measured_.views.push_back(std::move(view));
+    emit viewsChanged();
+    changed(true);
+    return measured_.views.back().name;
+}
+
+void Session::replaceView(ScannedView view) {
+    for (ScannedView& existing : measured_.views) {
+        if (existing.name == view.name)
+            existing = std::move(view);
+    }
+    emit viewsChanged();
+    changed(false);
+}
+
+void Session::decide(const QString& text, const std::function<void(Decisions&)>& change) {
+    Decisions other = decisions_;
+    change(other);
+    if (other == decisions_)
+        return;
+    undoStack_.push(new DecideCommand(*this, std::move(other), text));
+}
+
+void Session::load(OpenedRecording recording) {
+    measured_ = std::move(recording.measured);
+    decisions_ = std::move(recording.decisions);
+    undoStack_.clear();
+    solver_.reset();
+    solution_.reset();
+    guidance_.reset();
+    failure_.clear();
+    emit skinChanged();
+    emit posesChanged();
+    emit viewsChanged();
+    emit decisionsChanged();
+    emit solutionChanged();
+    changed(false);
+    setSaved(revision_);
+}
+
+void Session::setSaved(std::uint64_t revision) {
+    savedRevision_ = revision;
+    emit modifiedChanged(isModified());
+}
+
+void Session::swapDecisions(Decisions& other) {
+    std::swap(decisions_, other);
+    emit decisionsChanged();
+    changed(false);
+}
+
+void Session::changed(bool onlyGrew) {
+    ++revision_;
+    onlyGrew_ = onlyGrew_ && onlyGrew;
+    guidance_.reset();
+    emit modifiedChanged(true);
+    emit guidanceChanged();
+    // Several changes in one turn of the event loop are solved once.
+    if (!std::exchange(isSolveDue_, true))
+        QTimer::singleShot(0, this, &Session::solveSoon);
+}
+
+void Session::solveSoon() {
+    isSolveDue_ = false;
+    const bool onlyGrew = std::exchange(onlyGrew_, true);
+    if (measured_.skin.modules.empty() || posesOf(measured_, decisions_).empty())
+        return;
+    solver_.request(std::make_shared<const Measurements>(measurementsOf(measured_, decisions_)), revision_, onlyGrew);
+}
+
+}  // namespace skincal

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <QObject>
+#include <QUndoStack>
+#include <functional>
+#include <memory>
+
+#include "core/session/session_data.h"
+#include "core/session/solver.h"
+
+namespace skincal {
+
+/// The open document: what was measured, what the operator decided, and the newest body that follows from both. It
+/// lives on the GUI's thread; solving is done on another. What is measured can't be undone, what is decided can.
+class Session : public QObject {
+    Q_OBJECT
+  public:
+    explicit Session(QObject* parent = nullptr);
+
+    [[nodiscard]] const Measured& measured() const { return measured_; }
+    [[nodiscard]] const Decisions& decisions() const { return decisions_; }
+    /// Rises with every change of either.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
+    [[nodiscard]] QUndoStack& undoStack() { return undoStack_; }
+
+    /// The newest body, not always of the newest data (see isSolving); null before the first.
+    [[nodiscard]] const std::shared_ptr<const Solution>& solution() const { return solution_; }
+    /// What to measure next; null while unknown.
+    [[nodiscard]] const std::shared_ptr<const Guidance>& guidance() const { return guidance_; }
+    [[nodiscard]] bool isSolving() const { return solver_.isBusy(); }
+    /// Why the newest data gave no body; empty where they did.
+    [[nodiscard]] const QString& failure() const { return failure_; }
+
+    [[nodiscard]] const ScannedView* findView(const std::string& name) const;
+
+    /// The network as explored. Poses and views stay where it is the same modules; of others they are forgotten, since
+    /// nothing tells what became of these.
+    void adoptSkin(Skin skin);
+    /// @return the new pose's number; `readings` get it.
+    int addPose(std::vector<GravityReading> readings);
+    /// @return the new view's name.
+    std::string addView(ScannedView view);
+    /// In the place of one that is there: scanned again.
+    void replaceView(ScannedView view);
+
+    /// Everything else is undoable. `text` is what the menu calls it.
+    void decide(const QString& text, const std::function<void(Decisions&)>& change);
+
+    /// An empty document, or one that was read.
+    void load(OpenedRecording recording);
+
+    /// Whether there is anything that save() would write anew.
+    [[nodiscard]] bool isModified() const { return revision_ != savedRevision_; }
+    void setSaved(std::uint64_t revision);
+
+  signals:
+    void skinChanged();
+    void posesChanged();
+    void viewsChanged();
+    void decisionsChanged();
+    void solutionChanged();
+    void guidanceChanged();
+    void solvingChanged(bool solving);
+    void solvingProgressed(const QString& stage, double done);
+    void modifiedChanged(bool modified);
+
+  private:
+    friend class DecideCommand;
+
+    void swapDecisions(Decisions& other);
+    void changed(bool onlyGrew);
+    void solveSoon();
+
+    Measured measured_;
+    Decisions decisions_;
+    QUndoStack undoStack_;
+    Solver solver_;
+    std::shared_ptr<const Solution> solution_;
+    std::shared_ptr<const Guidance> guidance_;
+    QString failure_;
+    std::uint64_t revision_ = 0;
+    std::uint64_t savedRevision_ = 0;
+    bool isSolveDue_ = false;
+    bool onlyGrew_ = true;
+};
+
+}  // namespace skincal

@@ -1,0 +1,129 @@
+#include "core/session/session_data.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace skincal {
+namespace {
+
+bool sameCamera(const std::optional<CameraModel>& a, const std::optional<CameraModel>& b) {
+    if (!a || !b)
+        return a.has_value() == b.has_value();
+    const auto tie = [](const CameraModel& c) {
+        return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.distortionModel, c.distortion);
+    };
+    return tie(*a) == tie(*b);
+}
+
+bool sameDecision(const std::pair<const DetectionKey, Decision>& a, const std::pair<const DetectionKey, Decision>& b) {
+    return a.first == b.first && a.second.verdict == b.second.verdict && a.second.reason == b.second.reason;
+}
+
+Skin decidedSkin(const Measured& measured, const Decisions& decisions) {
+    Skin skin = measured.skin;
+    for (Link& link : skin.links) {
+        const auto decided = decisions.links.find(LinkKey::of(link));
+        if (decided != decisions.links.end())
+            link.decided = decided->second;
+    }
+    return skin;
+}
+
+std::vector<GravityReading> countingReadings(const Measured& measured, const Decisions& decisions) {
+    std::vector<GravityReading> readings;
+    for (const GravityReading& reading : measured.gravity) {
+        if (!decisions.droppedPoses.contains(reading.pose))
+            readings.push_back(reading);
+    }
+    return readings;
+}
+
+/// A rejected detection counts as not found.
+ViewDetections withoutRejected(ViewDetections view, const Decisions& decisions) {
+    std::erase_if(view.found, [&](const LedDetection& detection) {
+        const auto decision = decisions.detections.find({view.name, detection.module});
+        if (decision == decisions.detections.end() || decision->second.verdict != "rejected")
+            return false;
+        const std::string& why = decision->second.reason;
+        view.undetected.push_back({detection.module, DetectionVerdict::NotFound,
+                                   "rejected by the operator" + (why.empty() ? "" : ": " + why)});
+        return true;
+    });
+    return view;
+}
+
+}  // namespace
+
+LinkKey LinkKey::of(const Link& link) {
+    if (std::tie(link.b, link.b_port) < std::tie(link.a, link.a_port))
+        return {link.b, link.b_port, link.a, link.a_port};
+    return {link.a, link.a_port, link.b, link.b_port};
+}
+
+bool Decisions::operator==(const Decisions& other) const {
+    return links == other.links && droppedPoses == other.droppedPoses && droppedViews == other.droppedViews &&
+           std::equal(detections.begin(), detections.end(), other.detections.begin(), other.detections.end(),
+                      sameDecision) &&
+           sameCamera(camera, other.camera);
+}
+
+Measurements measurementsOf(const Measured& measured, const Decisions& decisions) {
+    Measurements result{decidedSkin(measured, decisions), countingReadings(measured, decisions), {}, {}};
+    if (!decisions.camera)
+        return result;
+    result.camera = *decisions.camera;
+    for (const ScannedView& view : measured.views) {
+        if (!decisions.droppedViews.contains(view.name))
+            result.views.push_back(withoutRejected(view.decoded, decisions));
+    }
+    return result;
+}
+
+Recording recordingOf(const Measured& measured, const Decisions& decisions) {
+    Recording recording;
+    recording.skin = decidedSkin(measured, decisions);
+    recording.gravity = countingReadings(measured, decisions);
+    if (decisions.camera)
+        recording.camera = *decisions.camera;
+    for (const ScannedView& view : measured.views) {
+        if (decisions.droppedViews.contains(view.name))
+            continue;
+        RecordedView recorded{view.name, view.frames, {}};
+        if (view.frames.empty())
+            recorded.detections = view.decoded.found;
+        recording.views.push_back(std::move(recorded));
+    }
+    for (const auto& [key, decision] : decisions.detections) {
+        if (!decisions.droppedViews.contains(key.view))
+            recording.decisions.push_back(decision);
+    }
+    return recording;
+}
+
+OpenedRecording openedFrom(const Recording& recording) {
+    OpenedRecording opened;
+    opened.measured.skin = recording.skin;
+    for (Link& link : opened.measured.skin.links) {
+        if (link.decided)
+            opened.decisions.links[LinkKey::of(link)] = *link.decided;
+        link.decided.reset();
+    }
+    opened.measured.gravity = recording.gravity;
+    for (const RecordedView& view : recording.views)
+        opened.measured.views.push_back({view.name, view.frames, nullptr, {view.name, view.detections, {}}});
+    for (const Decision& decision : recording.decisions)
+        opened.decisions.detections[{decision.view, decision.module}] = decision;
+    opened.decisions.camera = recording.camera;
+    return opened;
+}
+
+std::vector<int> posesOf(const Measured& measured, const Decisions& decisions) {
+    std::set<int> poses;
+    for (const GravityReading& reading : measured.gravity) {
+        if (!decisions.droppedPoses.contains(reading.pose))
+            poses.insert(reading.pose);
+    }
+    return {poses.begin(), poses.end()};
+}
+
+}  // namespace skincal

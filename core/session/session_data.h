@@ -1,0 +1,81 @@
+#pragma once
+
+#include <compare>
+#include <map>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/adjustment/measurements.h"
+#include "core/formats/recording.h"
+
+namespace skincal {
+
+using Pictures = std::vector<cv::Mat>;
+
+/// One scan: what was lit in which picture, and what the decoder made of it.
+struct ScannedView {
+    std::string name;
+    std::vector<FrameInfo> frames;             ///< empty where only detections were recorded
+    std::shared_ptr<const Pictures> pictures;  ///< of `frames`; null where they are on the disk alone
+    ViewDetections decoded;                    ///< before anybody rejected anything
+};
+
+/// What devices reported; it grows, and nothing in it is ever changed by a decision.
+struct Measured {
+    Skin skin;  ///< without the operator's word on links
+    std::vector<GravityReading> gravity;
+    std::vector<ScannedView> views;
+};
+
+/// A link whichever end it is seen from.
+struct LinkKey {
+    ModuleId a;
+    int a_port = 0;
+    ModuleId b;
+    int b_port = 0;
+
+    /// a is the smaller end.
+    [[nodiscard]] static LinkKey of(const Link& link);
+    friend auto operator<=>(const LinkKey&, const LinkKey&) = default;  // NOLINT(modernize-use-nullptr)
+};
+
+/// A module in a view.
+struct DetectionKey {
+    std::string view;
+    ModuleId module;
+    friend auto operator<=>(const DetectionKey&, const DetectionKey&) = default;  // NOLINT(modernize-use-nullptr)
+};
+
+/// All that the operator decided: one value, so that undoing is putting an older one back.
+struct Decisions {
+    std::map<LinkKey, LinkKind> links;
+    std::set<int> droppedPoses;
+    std::set<std::string> droppedViews;
+    std::map<DetectionKey, Decision> detections;
+    std::optional<CameraModel> camera;
+
+    [[nodiscard]] bool operator==(const Decisions& other) const;
+};
+
+/// What a calibration is computed from: the measured minus what was dropped or rejected. Needs Decisions::camera where
+/// there are views; without one they are left out.
+[[nodiscard]] Measurements measurementsOf(const Measured& measured, const Decisions& decisions);
+
+/// The same as a file. Dropped poses and views are not in it; rejected detections are, with the decision.
+[[nodiscard]] Recording recordingOf(const Measured& measured, const Decisions& decisions);
+
+/// A recording taken apart again. Views with pictures are not decoded yet.
+struct OpenedRecording {
+    Measured measured;
+    Decisions decisions;
+};
+[[nodiscard]] OpenedRecording openedFrom(const Recording& recording);
+
+/// Numbers of the poses that count, rising.
+[[nodiscard]] std::vector<int> posesOf(const Measured& measured, const Decisions& decisions);
+
+}  // namespace skincal

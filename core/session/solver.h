@@ -1,0 +1,53 @@
+#pragma once
+
+#include <QObject>
+#include <QThreadPool>
+#include <atomic>
+#include <memory>
+
+#include "core/session/solution.h"
+
+namespace skincal {
+
+/// Solves on a thread of its own, newest request first: one that comes while another is computed cancels that. What
+/// comes out is a snapshot, handed over by a signal on the thread that the solver lives on.
+class Solver : public QObject {
+    Q_OBJECT
+  public:
+    explicit Solver(QObject* parent = nullptr);
+    /// Cancels, and waits until the thread has let go: some tenths of a second.
+    ~Solver() override;
+
+    /// @param mayUpdate  whether the measurements only grew since the last solution was asked for.
+    void request(std::shared_ptr<const Measurements> measurements, std::uint64_t revision, bool mayUpdate);
+    /// Nothing is computed any more, and what was is forgotten.
+    void reset();
+    [[nodiscard]] bool isBusy() const { return isBusy_; }
+
+  signals:
+    void busyChanged(bool busy);
+    void progressed(const QString& stage, double done);
+    void solved(std::shared_ptr<const skincal::Solution> solution);
+    void guided(std::shared_ptr<const skincal::Guidance> guidance);
+    void failed(const QString& why, std::uint64_t revision);
+
+  private:
+    struct Request {
+        std::shared_ptr<const Measurements> measurements;
+        std::uint64_t revision = 0;
+        bool mayUpdate = false;
+    };
+
+    void startNext();
+    void finish(std::uint64_t run);
+
+    QThreadPool pool_;
+    std::shared_ptr<std::atomic<bool>> cancelled_;
+    std::optional<Request> next_;
+    std::shared_ptr<const Solution> last_;
+    bool grewSinceLast_ = true;
+    std::uint64_t run_ = 0;
+    bool isBusy_ = false;
+};
+
+}  // namespace skincal

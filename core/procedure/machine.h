@@ -27,4 +27,12 @@ struct StopTimer {
     friend bool operator==(const StopTimer&, const StopTimer&) = default;
 };
 
+/// For std::visit with one lambda per alternative.
+template <class... Functions>
+struct Overloaded : Functions... {
+    using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
 }  // namespace skincal

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <QObject>
+#include <QPointer>
+#include <QTimer>
+#include <set>
+
+#include "core/procedure/connection.h"
+#include "ui/presenters/link_model.h"
+#include "ui/presenters/workbench.h"
+
+namespace skincal {
+
+/// Something about the wiring that the operator should look at.
+struct WiringFault {
+    enum class Kind { NoLink, DoublyWired, SelfLink };
+    Kind kind{};
+    std::vector<ModuleId> modules;
+};
+
+/// Modules that no link reaches, ports that two links claim, modules linked to themselves.
+[[nodiscard]] std::vector<WiringFault> wiringFaults(const Skin& skin);
+
+/// From a list of devices to a skin whose network is known.
+class ConnectPresenter : public QObject {
+    Q_OBJECT
+  public:
+    explicit ConnectPresenter(Workbench& workbench, QObject* parent = nullptr);
+
+    [[nodiscard]] const Connection& state() const { return state_; }
+    [[nodiscard]] LinkModel& links() { return links_; }
+    [[nodiscard]] const LinkModel& links() const { return links_; }
+    /// Those that have reported since the exploration began, in that order.
+    [[nodiscard]] const std::vector<ModuleId>& found() const { return found_; }
+
+    void chooseDevice(int offer);
+    void connectSkin();
+    void disconnectSkin();
+    /// Its LED goes on and off a few times.
+    void blink(ModuleId module);
+
+  signals:
+    void stateChanged();
+    void blinking(skincal::ModuleId module, bool on);
+
+  private:
+    void handle(const connection::Event& event);
+    void attachDevice();
+    void blinkStep();
+
+    Workbench& workbench_;
+    LinkModel links_;
+    Connection state_;
+    QTimer timer_;
+    QTimer blinkTimer_;
+    std::vector<ModuleId> found_;
+    ModuleId blinks_;
+    int blinkSteps_ = 0;
+};
+
+}  // namespace skincal

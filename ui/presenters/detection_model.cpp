@@ -1,0 +1,192 @@
+#include "ui/presenters/detection_model.h"
+
+#include <algorithm>
+#include <map>
+
+namespace skincal {
+namespace {
+
+using State = DetectionRow::State;
+
+State stateOf(DetectionVerdict verdict) {
+    return verdict == DetectionVerdict::Ambiguous ? State::Ambiguous : State::NotFound;
+}
+
+/// What the decoder made of a view.
+std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Decisions& decisions) {
+    std::map<ModuleId, DetectionRow> rows;
+    for (const LedDetection& found : view.decoded.found)
+        rows[found.module] = {found.module, State::Used, found.pixel, found.sigma_px, std::nullopt, false, {}};
+    for (const Undetected& undetected : view.decoded.undetected) {
+        DetectionRow& row = rows[undetected.module];
+        row.module = undetected.module;
+        row.state = stateOf(undetected.verdict);
+        row.reason = QString::fromStdString(undetected.reason);
+    }
+    for (auto& [module, row] : rows) {
+        const auto decision = decisions.detections.find({view.name, module});
+        if (decision == decisions.detections.end() || decision->second.verdict != "rejected" || !row.pixel)
+            continue;
+        row.state = State::Rejected;
+        row.isOperatorsWord = true;
+        row.reason = QString::fromStdString(decision->second.reason);
+    }
+    return rows;
+}
+
+void addResiduals(const BodyView& view, std::map<ModuleId, DetectionRow>& rows) {
+    for (const BodyObservation& observation : view.observations) {
+        const auto found = rows.find(observation.module);
+        if (found == rows.end() || found->second.isOperatorsWord)
+            continue;
+        DetectionRow& row = found->second;
+        if (observation.residual)
+            row.residual_px = observation.residual->norm();
+        if (observation.verdict == ObservationVerdict::Rejected) {
+            row.state = State::SetAside;
+            row.reason = QString::fromStdString(observation.reason);
+        }
+    }
+}
+
+}  // namespace
+
+QString nameOf(DetectionRow::State state) {
+    switch (state) {
+        case State::Used:
+            return DetectionModel::tr("used");
+        case State::SetAside:
+            return DetectionModel::tr("set aside");
+        case State::Rejected:
+            return DetectionModel::tr("rejected");
+        case State::Ambiguous:
+            return DetectionModel::tr("ambiguous");
+        default:
+            return DetectionModel::tr("not found");
+    }
+}
+
+DetectionModel::DetectionModel(Workbench& workbench, QObject* parent)
+    : QAbstractTableModel(parent), workbench_(workbench) {
+    const Session& session = workbench.session();
+    connect(&session, &Session::viewsChanged, this, &DetectionModel::refresh);
+    connect(&session, &Session::decisionsChanged, this, &DetectionModel::refresh);
+    connect(&session, &Session::solutionChanged, this, &DetectionModel::refresh);
+}
+
+void DetectionModel::setView(const std::string& view) {
+    view_ = view;
+    refresh();
+}
+
+int DetectionModel::rowCount(const QModelIndex& parent) const {
+    return parent.isValid() ? 0 : static_cast<int>(rows_.size());
+}
+
+int DetectionModel::columnCount(const QModelIndex& parent) const {
+    return parent.isValid() ? 0 : Columns;
+}
+
+QVariant DetectionModel::data(const QModelIndex& index, int role) const {
+    if (!checkIndex(index, CheckIndexOption::IndexIsValid))
+        return {};
+    const DetectionRow& row = rows_[static_cast<std::size_t>(index.row())];
+    const auto number = [&](const std::optional<double>& value) -> QVariant {
+        if (role == kSortRole)
+            return value.value_or(-1);
+        return value ? QVariant(tr("%1 px").arg(*value, 0, 'f', 2)) : QVariant(tr("–"));
+    };
+    if (role == Qt::ToolTipRole)
+        return row.reason;
+    const bool isNumber = index.column() == Module || index.column() == Residual || index.column() == Sigma;
+    if (role == Qt::TextAlignmentRole)
+        return static_cast<int>((isNumber ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
+    if (role != Qt::DisplayRole && role != kSortRole)
+        return {};
+    switch (index.column()) {
+        case Module:
+            return row.module.value;
+        case State:
+            return row.isOperatorsWord ? tr("%1 (your word)").arg(nameOf(row.state)) : nameOf(row.state);
+        case Residual:
+            return number(row.residual_px);
+        case Sigma:
+            return number(row.sigma_px);
+        case Reason:
+            return row.reason;
+        default:
+            return {};
+    }
+}
+
+QVariant DetectionModel::headerData(int section, Qt::Orientation orientation, int role) const {
+    if (orientation != Qt::Horizontal)
+        return {};
+    if (role == Qt::ToolTipRole && section == Residual)
+        return tr("Distance between the spot in the picture and where the body has it");
+    if (role == Qt::ToolTipRole && section == Sigma)
+        return tr("How well the centre of the spot is known");
+    if (role != Qt::DisplayRole)
+        return {};
+    switch (section) {
+        case Module:
+            return tr("Module");
+        case State:
+            return tr("State");
+        case Residual:
+            return tr("Residual");
+        case Sigma:
+            return tr("Sigma");
+        case Reason:
+            return tr("Why");
+        default:
+            return {};
+    }
+}
+
+std::optional<int> DetectionModel::rowOf(ModuleId module) const {
+    const auto found =
+        std::find_if(rows_.begin(), rows_.end(), [&](const DetectionRow& row) { return row.module == module; });
+    if (found == rows_.end())
+        return std::nullopt;
+    return static_cast<int>(found - rows_.begin());
+}
+
+void DetectionModel::reject(const std::vector<ModuleId>& modules, const QString& why) {
+    workbench_.session().decide(
+        tr("Reject %n detection(s) in %1", nullptr, static_cast<int>(modules.size())).arg(view_.c_str()),
+        [&](Decisions& decisions) {
+            for (const ModuleId module : modules)
+                decisions.detections[{view_, module}] = {view_, module, "rejected", why.toStdString()};
+        });
+}
+
+void DetectionModel::accept(const std::vector<ModuleId>& modules) {
+    workbench_.session().decide(
+        tr("Accept %n detection(s) in %1", nullptr, static_cast<int>(modules.size())).arg(view_.c_str()),
+        [&](Decisions& decisions) {
+            for (const ModuleId module : modules)
+                decisions.detections.erase({view_, module});
+        });
+}
+
+void DetectionModel::refresh() {
+    Session& session = workbench_.session();
+    std::map<ModuleId, DetectionRow> rows;
+    if (const ScannedView* view = session.findView(view_)) {
+        rows = decodedRows(*view, session.decisions());
+        if (session.solution()) {
+            for (const BodyView& solved : session.solution()->body.views) {
+                if (solved.name == view_)
+                    addResiduals(solved, rows);
+            }
+        }
+    }
+    beginResetModel();
+    rows_.clear();
+    for (auto& [module, row] : rows)
+        rows_.push_back(std::move(row));
+    endResetModel();
+}
+
+}  // namespace skincal

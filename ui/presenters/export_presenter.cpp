@@ -1,0 +1,56 @@
+#include "ui/presenters/export_presenter.h"
+
+#include "core/formats/body_json.h"
+#include "core/formats/export_csv.h"
+#include "core/formats/export_ply.h"
+#include "core/formats/export_urdf.h"
+#include "core/formats/files.h"
+
+namespace skincal {
+
+ExportPresenter::ExportPresenter(Workbench& workbench, QObject* parent) : QObject(parent), workbench_(workbench) {
+    formats_ = {
+        {tr("Body model"), QStringLiteral(".body.json"),
+         tr("Everything: poses with covariances, verdicts on links and detections, quality. Metres, unit quaternions "
+            "(x y z w), in the body frame, which is the first placed camera's."),
+         [](const BodyModel& body) { return bodyToJson(body); }},
+        {tr("URDF"), QStringLiteral(".urdf"),
+         tr("For robots: a link skin_base (the body frame), a fixed link per patch and per module. Metres and "
+            "radians."),
+         [](const BodyModel& body) { return exportUrdf(body); }},
+        {tr("CSV table"), QStringLiteral(".csv"),
+         tr("One row per module: number, type, patch, position (m) and unit quaternion (x y z w) in the body frame."),
+         [](const BodyModel& body) { return exportCsv(body); }},
+        {tr("PLY mesh"), QStringLiteral(".ply"),
+         tr("The outlines of all placed boards as faces with a colour per patch. Metres, body frame."),
+         [](const BodyModel& body) { return exportPly(body); }},
+    };
+    connect(&workbench.session(), &Session::solutionChanged, this, &ExportPresenter::changed);
+}
+
+const BodyModel* ExportPresenter::body() const {
+    const auto& solution = workbench_.session().solution();
+    return solution && solution->body.quality.modulesPlaced > 0 ? &solution->body : nullptr;
+}
+
+QString ExportPresenter::preview(std::size_t format, int lines) const {
+    if (body() == nullptr)
+        return {};
+    const QString text = QString::fromStdString(formats_.at(format).bytes(*body()));
+    qsizetype end = 0;
+    for (int line = 0; line < lines && end >= 0; ++line)
+        end = text.indexOf(u'\n', end) + 1 > 0 ? text.indexOf(u'\n', end) + 1 : -1;
+    return end < 0 || end == text.size() ? text : text.left(end) + QStringLiteral("…");
+}
+
+QString ExportPresenter::write(std::size_t format, const std::filesystem::path& file) {
+    if (body() == nullptr)
+        return tr("There is no placed module to export.");
+    const auto result = writeFileAtomically(file, formats_.at(format).bytes(*body()));
+    if (!result)
+        return QString::fromStdString(result.error().message());
+    emit written(QString::fromStdString(file.string()));
+    return {};
+}
+
+}  // namespace skincal

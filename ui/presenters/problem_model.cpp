@@ -1,0 +1,194 @@
+#include "ui/presenters/problem_model.h"
+
+#include <algorithm>
+
+namespace skincal {
+namespace {
+
+using Severity = Problem::Severity;
+
+/// A camera that stands moves by less than this between two pictures: noise.
+constexpr double kMoved_px = 1.0;
+
+QString numbersOf(const std::vector<ModuleId>& modules) {
+    QStringList numbers;
+    for (const ModuleId module : modules)
+        numbers << QString::number(module.value);
+    return numbers.join(QStringLiteral(", "));
+}
+
+Step stepOf(Shortfall::Kind kind) {
+    switch (kind) {
+        case Shortfall::Kind::GravityMissing:
+        case Shortfall::Kind::PosesAlike:
+            return Step::Pose;
+        case Shortfall::Kind::ModulesHidden:
+            return Step::Scan;
+        case Shortfall::Kind::ScaleFromLinksOnly:
+        case Shortfall::Kind::Undetermined:
+            return Step::Result;
+        default:
+            return Step::Views;
+    }
+}
+
+Step stepOf(const Finding& finding) {
+    switch (finding.kind) {
+        case Finding::Kind::WrongLink:
+        case Finding::Kind::WrongTemplate:
+            return Step::Connect;
+        case Finding::Kind::ShakenPose:
+        case Finding::Kind::NoisyAccelerometer:
+            return Step::Pose;
+        case Finding::Kind::BumpedView:
+        case Finding::Kind::UnsteadyView:
+            return Step::Scan;
+        default:
+            return Step::Result;
+    }
+}
+
+Problem problemOf(const WiringFault& fault) {
+    switch (fault.kind) {
+        case WiringFault::Kind::NoLink:
+            return {Severity::Warning,
+                    Step::Connect,
+                    ProblemModel::tr("Module %1 is linked to no other").arg(numbersOf(fault.modules)),
+                    fault.modules,
+                    {}};
+        case WiringFault::Kind::SelfLink:
+            return {Severity::Warning,
+                    Step::Connect,
+                    ProblemModel::tr("Module %1 reports itself as its neighbour").arg(numbersOf(fault.modules)),
+                    fault.modules,
+                    {}};
+        default:
+            return {Severity::Warning,
+                    Step::Connect,
+                    ProblemModel::tr("Two links claim one port of modules %1").arg(numbersOf(fault.modules)),
+                    fault.modules,
+                    {}};
+    }
+}
+
+void addSolution(const Solution& solution, std::vector<Problem>& problems) {
+    for (const Finding& finding : solution.body.quality.findings)
+        problems.push_back({Severity::Warning, stepOf(finding), QString::fromStdString(finding.text), finding.modules,
+                            finding.view.value_or(std::string()), finding.pose.value_or(-1)});
+    for (const Shortfall& shortfall : solution.shortfalls)
+        problems.push_back({Severity::Note, stepOf(shortfall.kind), QString::fromStdString(shortfall.text),
+                            shortfall.modules, shortfall.views.empty() ? std::string() : shortfall.views.front()});
+}
+
+}  // namespace
+
+ProblemModel::ProblemModel(Workbench& workbench, const ConnectPresenter& connection, const ScanPresenter& scan,
+                           QObject* parent)
+    : QAbstractListModel(parent), workbench_(workbench), connection_(connection), scan_(scan) {
+    const Session& session = workbench.session();
+    for (const auto signal :
+         {&Session::skinChanged, &Session::viewsChanged, &Session::decisionsChanged, &Session::solutionChanged})
+        connect(&session, signal, this, &ProblemModel::refresh);
+    connect(&connection, &ConnectPresenter::stateChanged, this, &ProblemModel::refresh);
+    connect(&scan, &ScanPresenter::stateChanged, this, &ProblemModel::refresh);
+    connect(&scan, &ScanPresenter::cameraFailed, this, [this](const QString& why) {
+        cameraFailure_ = why;
+        refresh();
+    });
+    connect(&scan, &ScanPresenter::pictureChanged, this, [this] {
+        if (!cameraFailure_.isEmpty() && !scan_.picture().empty()) {
+            cameraFailure_.clear();
+            refresh();
+        }
+    });
+    connect(&scan, &ScanPresenter::scanned, this, [this](const std::string& view, double moved_px) {
+        moved_[view] = moved_px;
+        refresh();
+    });
+    refresh();
+}
+
+int ProblemModel::rowCount(const QModelIndex& parent) const {
+    return parent.isValid() ? 0 : static_cast<int>(problems_.size());
+}
+
+QVariant ProblemModel::data(const QModelIndex& index, int role) const {
+    if (!checkIndex(index, CheckIndexOption::IndexIsValid))
+        return {};
+    const Problem& problem = problemAt(index.row());
+    switch (role) {
+        case Qt::DisplayRole:
+        case Qt::ToolTipRole:
+            return problem.text;
+        case SeverityRole:
+            return static_cast<int>(problem.severity);
+        case StepRole:
+            return nameOf(problem.step);
+        default:
+            return {};
+    }
+}
+
+void ProblemModel::setNotice(const QString& text, Step step) {
+    notice_ = Problem{Severity::Error, step, text, {}, {}};
+    refresh();
+}
+
+void ProblemModel::clearNotice() {
+    if (notice_) {
+        notice_.reset();
+        refresh();
+    }
+}
+
+void ProblemModel::collect(std::vector<Problem>& problems) const {
+    Session& session = workbench_.session();
+    if (notice_)
+        problems.push_back(*notice_);
+    if (connection_.state().phase == Connection::Phase::Lost)
+        problems.push_back({Severity::Error, Step::Connect, QString::fromStdString(connection_.state().why), {}, {}});
+    if (!cameraFailure_.isEmpty())
+        problems.push_back({Severity::Error, Step::Camera, cameraFailure_, {}, {}});
+    if (scan_.state().phase == ScanRun::Phase::Failed)
+        problems.push_back({Severity::Error,
+                            Step::Scan,
+                            tr("The scan was broken off: %1").arg(QString::fromStdString(scan_.state().why)),
+                            {},
+                            {}});
+    if (!session.failure().isEmpty())
+        problems.push_back({Severity::Error, Step::Result, session.failure(), {}, {}});
+    for (const WiringFault& fault : wiringFaults(session.measured().skin))
+        problems.push_back(problemOf(fault));
+    for (const auto& [view, moved_px] : moved_) {
+        if (moved_px > kMoved_px && session.findView(view) != nullptr &&
+            !session.decisions().droppedViews.contains(view))
+            problems.push_back({Severity::Warning,
+                                Step::Scan,
+                                tr("The camera moved by %1 px while %2 was scanned: scan it again")
+                                    .arg(moved_px, 0, 'f', 1)
+                                    .arg(view.c_str()),
+                                {},
+                                view});
+    }
+    if (session.solution())
+        addSolution(*session.solution(), problems);
+}
+
+void ProblemModel::refresh() {
+    std::vector<Problem> problems;
+    collect(problems);
+    std::stable_sort(problems.begin(), problems.end(),
+                     [](const Problem& a, const Problem& b) { return a.severity > b.severity; });
+    const auto same = [](const Problem& a, const Problem& b) {
+        return a.text == b.text && a.severity == b.severity && a.step == b.step;
+    };
+    if (std::equal(problems.begin(), problems.end(), problems_.begin(), problems_.end(), same)) {
+        problems_ = std::move(problems);
+        return;
+    }
+    beginResetModel();
+    problems_ = std::move(problems);
+    endResetModel();
+}
+
+}  // namespace skincal

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <QObject>
+#include <QString>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/camera/frame_source.h"
+#include "core/device/skin_device.h"
+#include "core/session/session.h"
+
+namespace skincal {
+
+/// Something that could be opened, as a list shows it.
+template <class Device>
+struct Offer {
+    QString name;
+    QString description;
+    std::function<std::unique_ptr<Device>()> make;
+};
+
+/// Hands that do what the window asks for: only a simulated rig has them. Relative to a module, since nobody but the
+/// rig knows where its body frame is.
+struct RigHands {
+    /// Turns the body until this direction of the module points against gravity.
+    std::function<void(ModuleId, const Vector3d& up_u)> turnBody;
+    /// Puts the camera there.
+    std::function<void(ModuleId, const Isometry3d& T_u_v)> moveCamera;
+    /// Puts the camera to the next of the rig's own places, for while nothing is placed.
+    std::function<void()> moveCameraOn;
+    /// What the maker of the camera says of its lens.
+    std::optional<CameraModel> intrinsics;
+};
+
+/// What all presenters share: the document and the devices.
+class Workbench : public QObject {
+    Q_OBJECT
+  public:
+    explicit Workbench(QObject* parent = nullptr) : QObject(parent) {}
+
+    [[nodiscard]] Session& session() { return session_; }
+
+    std::vector<Offer<SkinDevice>> skinOffers;
+    std::vector<Offer<FrameSource>> cameraOffers;
+    std::optional<RigHands> hands;
+
+    /// Null before a device was chosen. Choosing another destroys the one before.
+    [[nodiscard]] SkinDevice* skin() const { return skin_.get(); }
+    [[nodiscard]] FrameSource* camera() const { return camera_.get(); }
+    void chooseSkin(std::size_t offer);
+    void chooseCamera(std::size_t offer);
+    [[nodiscard]] int chosenSkin() const { return chosenSkin_; }
+    [[nodiscard]] int chosenCamera() const { return chosenCamera_; }
+
+    /// Whether the skin is open and its network known: what streams and lights need.
+    [[nodiscard]] bool isSkinReady() const { return isSkinReady_; }
+    void setSkinReady(bool ready);
+
+  signals:
+    void skinChosen();
+    void cameraChosen();
+    void skinReadyChanged(bool ready);
+
+  private:
+    Session session_;
+    std::unique_ptr<SkinDevice> skin_;
+    std::unique_ptr<FrameSource> camera_;
+    int chosenSkin_ = -1;
+    int chosenCamera_ = -1;
+    bool isSkinReady_ = false;
+};
+
+}  // namespace skincal

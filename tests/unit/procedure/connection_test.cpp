@@ -94,6 +94,13 @@ TEST(Connection, SaysWhyItWasLost) {
     EXPECT_EQ(step(stateIn(Lost), Connect{}).state.why, "");
 }
 
+TEST(Connection, ALateClosedDoesNotSpoilTheNextConnection) {
+    Connection state = step(stateIn(Connected), Disconnect{}).state;
+    for (const Event& event : std::vector<Event>{Connect{}, Closed{}, Opened{}, ModuleFound{}, Explored{}})
+        state = step(state, event).state;
+    EXPECT_TRUE((state == Connection{Connected, 1, {}}));
+}
+
 Event randomEvent(Random& random) {
     switch (random.index(10)) {
         case 0:

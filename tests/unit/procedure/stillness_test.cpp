@@ -127,7 +127,7 @@ TEST(Stillness, ModulesThatDoNotAnswerDoNotCount) {
             meter.add(i * 10ms, readings);
         }
         ASSERT_TRUE(meter.movement());
-        EXPECT_NEAR(*meter.movement(), 0.05, 0.01);
+        EXPECT_NEAR(*meter.movement(), 0.05, 0.005);
         const auto means = meter.meansSince(0s, 7);
         ASSERT_EQ(means.size(), modules - 2);
         std::size_t next = 0;
@@ -174,6 +174,21 @@ TEST(Stillness, MeansAreAsUncertainAsTheySay) {
     }
     // 6000 axes: 3 sigma of their mean square is 5.5 %.
     EXPECT_NEAR(squares / count, 1, 0.055);
+}
+
+TEST(Stillness, FewSamplesDoNotLookBetterThanMany) {
+    Random random(9, "few");
+    for (const int samples : {2, 3, 5}) {
+        const std::size_t modules = 5000;
+        StillnessMeter meter(someModules(modules));
+        for (int i = 0; i < samples; ++i)
+            meter.add(i * 200ms, noisy(random, std::vector<Vector3d>(modules, Vector3d::UnitX()), 0.1));
+        double variance = 0;
+        for (const GravityReading& mean : meter.meansSince(0s, 0))
+            variance += samples * std::pow(mean.sigma.value_or(0), 2) / static_cast<double>(modules);
+        // 15000 degrees of freedom at least: 3 sigma are 3.5 %.
+        EXPECT_NEAR(variance / 0.01, 1, 0.035);
+    }
 }
 
 TEST(Stillness, MeansAreOfWhatCameSince) {

@@ -11,11 +11,9 @@ constexpr std::chrono::milliseconds kOpens{3000};
 /// Between two signs of life of a network that is explored.
 constexpr std::chrono::milliseconds kAnswers{3000};
 
-Result lost(std::string why, bool isOpen) {
-    Result result{{Phase::Lost, 0, std::move(why)}, {StopTimer{}}};
-    if (isOpen)
-        result.effects.emplace_back(CloseDevice{});
-    return result;
+/// Closed in any case: a report may be of an earlier time, and closing what is closed does nothing.
+Result lost(std::string why) {
+    return {{Phase::Lost, 0, std::move(why)}, {CloseDevice{}, StopTimer{}}};
 }
 
 struct Stepper {
@@ -23,10 +21,11 @@ struct Stepper {
 
     [[nodiscard]] bool in(Phase phase) const { return state.phase == phase; }
     [[nodiscard]] bool isOpen() const { return in(Phase::Exploring) || in(Phase::Connected); }
+    [[nodiscard]] Result explore() const { return {{Phase::Exploring, 0, {}}, {Explore{}, StartTimer{kAnswers}}}; }
 
     Result operator()(const Connect&) const {
         if (in(Phase::Connected))
-            return {{Phase::Exploring, 0, {}}, {Explore{}, StartTimer{kAnswers}}};
+            return explore();
         if (in(Phase::Opening) || in(Phase::Exploring))
             return {state};
         return {{Phase::Opening, 0, {}}, {OpenDevice{}, StartTimer{kOpens}}};
@@ -39,16 +38,15 @@ struct Stepper {
     Result operator()(const Opened&) const {
         if (!in(Phase::Opening))
             return {state};
-        return {{Phase::Exploring, 0, {}}, {Explore{}, StartTimer{kAnswers}}};
+        return explore();
     }
     Result operator()(const Closed&) const {
-        if (in(Phase::Opening) || isOpen())
-            return lost("the skin was disconnected", false);
-        return {state};
+        // In Opening it is the late echo of an earlier CloseDevice: what is to open has not been open.
+        return isOpen() ? lost("the skin was disconnected") : Result{state};
     }
     Result operator()(const Failed& failed) const {
         if (in(Phase::Opening) || isOpen())
-            return lost(failed.why, isOpen());
+            return lost(failed.why);
         return {state};
     }
     Result operator()(const ModuleFound&) const {
@@ -63,11 +61,10 @@ struct Stepper {
     }
     Result operator()(const TimedOut&) const {
         if (in(Phase::Opening))
-            return lost("the skin does not answer: is it powered, and is this its port?", true);
+            return lost("the skin does not answer: is it powered, and is this its port?");
         if (in(Phase::Exploring))
             return lost(state.found == 0 ? "the skin is open, but no module reports"
-                                         : "the network went silent while it was explored",
-                        true);
+                                         : "the network went silent while it was explored");
         return {state};
     }
 };

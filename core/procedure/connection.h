@@ -9,7 +9,8 @@
 
 namespace skincal {
 
-/// From no skin to one whose network is known.
+/// From no skin to one whose network is known. In Disconnected and Lost the last thing the device was told is to close
+/// (or it was never told to open).
 struct Connection {
     enum class Phase {
         Disconnected,
@@ -29,7 +30,7 @@ namespace connection {
 
 struct Connect {};     ///< the operator's; in Connected: explore again
 struct Disconnect {};  ///< the operator's
-struct Opened {};
+struct Opened {};      ///< of the newest OpenDevice
 struct Closed {};
 struct Failed {
     std::string why;

@@ -1,5 +1,6 @@
 #include "core/procedure/pose_capture.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace skincal {
@@ -25,7 +26,8 @@ struct Stepper {
             return {state};
         if (!sample.isAtRest)
             return {{Phase::Moving, {}}};
-        if (state.phase == Phase::Moving)
+        // A clock that began anew says nothing about how long the body has rested.
+        if (state.phase == Phase::Moving || sample.time < state.since)
             return {{sample.isNew ? Phase::Resting : Phase::Captured, sample.time}};
         if (state.phase == Phase::Captured) {
             // A pose that was dropped is worth capturing again, though nothing moved.
@@ -34,7 +36,7 @@ struct Stepper {
         if (!sample.isNew)
             return {{Phase::Captured, state.since}};
         if (options.isAutomatic && sample.time - state.since >= options.rest)
-            return {{Phase::Captured, state.since}, {Capture{sample.time - options.rest}}};
+            return {{Phase::Captured, sample.time}, {Capture{sample.time - options.rest}}};
         return {state};
     }
 
@@ -45,7 +47,7 @@ struct Stepper {
         const bool hasRested = state.phase != Phase::Moving && now.time - state.since >= options.rest / 2;
         if (!hasRested)
             return {state, {Refuse{}}};
-        return {{Phase::Captured, state.since}, {Capture{std::max(state.since, now.time - options.rest)}}};
+        return {{Phase::Captured, now.time}, {Capture{std::max(state.since, now.time - options.rest)}}};
     }
 };
 

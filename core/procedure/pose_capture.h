@@ -14,11 +14,11 @@ struct PoseCapture {
     enum class Phase {
         Off,
         Moving,    ///< or trembling
-        Resting,   ///< since `since`, in a pose that is worth capturing
+        Resting,   ///< in a pose that is worth capturing
         Captured,  ///< at rest in a pose that is there already: to be turned on
     };
     Phase phase = Phase::Off;
-    std::chrono::microseconds since{};
+    std::chrono::microseconds since{};  ///< the body rests from there on, and no pose has readings from there on
 
     friend bool operator==(const PoseCapture&, const PoseCapture&) = default;
 };
@@ -41,7 +41,8 @@ struct Sample {
     bool isAtRest = false;
     bool isNew = false;  ///< no captured pose is like it
 };
-/// The operator wants this pose, new or not; refused while the body moves.
+/// The operator wants this pose, new or not; refused while the body moves, has rested for less than half of
+/// PoseCaptureOptions::rest, or was captured less than that ago: no reading counts twice.
 struct CaptureNow {
     std::chrono::microseconds time{};
 };
@@ -53,7 +54,7 @@ struct Capture {
     std::chrono::microseconds from{};
     friend bool operator==(const Capture&, const Capture&) = default;
 };
-/// The operator asked for a pose, and there is none: the body moves.
+/// The operator asked for a pose, and there is none.
 struct Refuse {
     friend bool operator==(const Refuse&, const Refuse&) = default;
 };

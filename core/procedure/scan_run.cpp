@@ -14,10 +14,11 @@ struct Stepper {
     const ScanRunOptions& options;
 
     [[nodiscard]] bool in(Phase phase) const { return state.phase == phase; }
+    [[nodiscard]] bool isBusy() const { return state.isRunning() || in(Phase::Paused) || in(Phase::Decoding); }
 
     [[nodiscard]] Result light(ScanRun next) const {
         next.phase = Phase::Lighting;
-        next.token = 0;
+        next.token.reset();
         const std::size_t frame = next.next;
         return {std::move(next), {Light{frame}, StartTimer{options.lightAnswers}}};
     }
@@ -29,9 +30,7 @@ struct Stepper {
     }
 
     Result operator()(const Start& start) const {
-        if (state.isRunning() || in(Phase::Paused) || in(Phase::Decoding))
-            return {state};
-        if (start.frames == 0)
+        if (isBusy() || start.frames == 0)
             return {state};
         ScanRun next;
         next.frames = start.frames;
@@ -50,7 +49,7 @@ struct Stepper {
         ScanRun next = state;
         next.phase = Phase::Settling;
         next.showsFrom = shown.now + options.settle;
-        return {std::move(next), {StartTimer{options.pictureComes}}};
+        return {std::move(next), {StartTimer{options.settle + options.pictureComes}}};
     }
     Result operator()(const PictureTaken& picture) const {
         if (!in(Phase::Settling) || picture.time < state.showsFrom)
@@ -94,18 +93,14 @@ struct Stepper {
         next.phase = Phase::Done;
         return {std::move(next)};
     }
-    Result operator()(const Failed& what) const {
-        if (state.isRunning() || in(Phase::Paused) || in(Phase::Decoding))
-            return failed(what.why);
-        return {state};
-    }
+    Result operator()(const Failed& what) const { return isBusy() ? failed(what.why) : Result{state}; }
     Result operator()(const TimedOut&) const {
-        if (in(Phase::Settling))
-            return failed("the camera gives no pictures");
-        if (!in(Phase::Lighting))
+        if (!state.isRunning())
             return {state};
+        // A camera that hiccups once must not cost all pictures so far. Its light is repeated, too: it may be gone.
         if (state.repeats >= options.maxRepeats)
-            return failed("the skin does not answer to light commands");
+            return failed(in(Phase::Lighting) ? "the skin does not answer to light commands"
+                                              : "the camera gives no pictures");
         ScanRun next = state;
         ++next.repeats;
         return light(std::move(next));

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -23,10 +24,10 @@ struct ScanRun {
         Failed,  ///< `why` says; what was kept is thrown away
     };
     Phase phase = Phase::Idle;
-    std::size_t frames = 0;   ///< how many there are to take
-    std::size_t next = 0;     ///< the one being taken
-    std::uint64_t token = 0;  ///< of the light command that is waited for
-    int repeats = 0;          ///< times that this light was commanded in vain
+    std::size_t frames = 0;                ///< how many there are to take
+    std::size_t next = 0;                  ///< the one being taken
+    std::optional<std::uint64_t> token{};  ///< of the light command that is waited for
+    int repeats = 0;                       ///< times that this frame's light was commanded in vain
     std::chrono::microseconds showsFrom{};
     std::string why{};
 
@@ -38,7 +39,9 @@ struct ScanRunOptions {
     /// From the acknowledgement of a light command to the exposure that certainly shows it.
     std::chrono::milliseconds settle{100};
     std::chrono::milliseconds lightAnswers{500};
+    /// From then to the picture at the latest.
     std::chrono::milliseconds pictureComes{1000};
+    /// What did not answer, skin or camera, gets as many chances more, each from the light command on.
     int maxRepeats = 3;
 
     [[nodiscard]] bool validate() const {
@@ -57,15 +60,15 @@ struct LightCommanded {
 };
 struct LightShown {
     std::uint64_t token = 0;
-    std::chrono::microseconds now{};
+    std::chrono::microseconds now{};  ///< of the clock that pictures carry
 };
 struct PictureTaken {
-    std::chrono::microseconds time{};
+    std::chrono::microseconds time{};  ///< of the beginning of its exposure
 };
 struct Pause {};
 struct Resume {};
-struct Cancel {};
-struct Decoded {};
+struct Cancel {};   ///< in Done and Failed: it has been seen
+struct Decoded {};  ///< of the newest Decode
 struct Failed {
     std::string why;
 };

@@ -13,7 +13,7 @@ StepState connectState(const Progress& p) {
         return {StepStatus::NeedsAttention, StepReason::SkinLost};
     if (!p.hasSkin)
         return {StepStatus::ToDo, StepReason::None};
-    if (p.neighbourLinks == 0 && p.modules > 1)
+    if (p.neighbourLinks == 0 && p.modules != 1)
         return {StepStatus::NeedsAttention, StepReason::NoNeighbours};
     return {StepStatus::Done, StepReason::None};
 }
@@ -21,13 +21,16 @@ StepState connectState(const Progress& p) {
 StepState poseState(const Progress& p) {
     if (!p.hasSkin)
         return {StepStatus::Blocked, StepReason::NoSkin};
+    const bool isEnough = p.poses >= kFewestPoses;
+    if (isEnough && !p.arePosesAlike)
+        return {StepStatus::Done, StepReason::None};
+    // What is still missing needs the skin itself.
+    if (p.isSkinLost)
+        return {StepStatus::Blocked, StepReason::SkinLost};
     if (p.poses == 0)
         return {StepStatus::ToDo, StepReason::NoPoses};
-    if (p.poses < kFewestPoses)
-        return {StepStatus::InProgress, StepReason::TooFewPoses};
-    if (p.arePosesAlike)
-        return {StepStatus::NeedsAttention, StepReason::PosesAlike};
-    return {StepStatus::Done, StepReason::None};
+    return isEnough ? StepState{StepStatus::NeedsAttention, StepReason::PosesAlike}
+                    : StepState{StepStatus::InProgress, StepReason::TooFewPoses};
 }
 
 StepState cameraState(const Progress& p) {
@@ -35,7 +38,10 @@ StepState cameraState(const Progress& p) {
         return {StepStatus::NeedsAttention, StepReason::CameraLost};
     if (!p.hasIntrinsics)
         return p.hasPictures ? StepState{StepStatus::InProgress, StepReason::NoIntrinsics}
-                             : StepState{StepStatus::ToDo, StepReason::NoIntrinsics};
+                             : StepState{StepStatus::ToDo, StepReason::NoCamera};
+    // Intrinsics from a file don't make a picture; a scan that is there needs no camera any more.
+    if (!p.hasPictures && p.views == 0)
+        return {StepStatus::ToDo, StepReason::NoCamera};
     return {StepStatus::Done, StepReason::None};
 }
 
@@ -44,9 +50,15 @@ StepState scanState(const Progress& p) {
         return {StepStatus::Blocked, StepReason::NoSkin};
     if (!p.hasIntrinsics)
         return {StepStatus::Blocked, StepReason::NoIntrinsics};
-    if (p.views == 0)
-        return {StepStatus::ToDo, StepReason::NoViews};
-    return {StepStatus::Done, StepReason::None};
+    if (p.views > 0)
+        return {StepStatus::Done, StepReason::None};
+    if (p.isSkinLost)
+        return {StepStatus::Blocked, StepReason::SkinLost};
+    if (p.isCameraLost)
+        return {StepStatus::Blocked, StepReason::CameraLost};
+    if (!p.hasPictures)
+        return {StepStatus::Blocked, StepReason::NoCamera};
+    return {StepStatus::ToDo, StepReason::NoViews};
 }
 
 StepState viewsState(const Progress& p) {
@@ -55,14 +67,16 @@ StepState viewsState(const Progress& p) {
     if (!p.hasBody)
         return {p.isSolving ? StepStatus::InProgress : StepStatus::NeedsAttention,
                 p.isSolving ? StepReason::Solving : StepReason::PatchesNotPlaced};
-    if (p.patchesPlaced < p.patches)
+    if (p.modulesPlaced == 0 || p.patchesPlaced < p.patches)
         return {StepStatus::InProgress, StepReason::PatchesNotPlaced};
     return {StepStatus::Done, StepReason::None};
 }
 
 StepState resultState(const Progress& p) {
-    if (!p.hasBody)
-        return {StepStatus::Blocked, p.isSolving ? StepReason::Solving : StepReason::NoViews};
+    if (!p.hasBody) {
+        const auto reason = p.views == 0 ? StepReason::NoViews : StepReason::PatchesNotPlaced;
+        return {StepStatus::Blocked, p.isSolving ? StepReason::Solving : reason};
+    }
     if (p.isSolving)
         return {StepStatus::InProgress, StepReason::Solving};
     if (p.modulesPlaced == 0)
@@ -87,7 +101,9 @@ StepState exportState(const Progress& p) {
 StepState demoState(const Progress& p) {
     if (!p.hasBody || p.modulesPlaced == 0)
         return {StepStatus::Blocked, StepReason::PatchesNotPlaced};
-    if (!p.hasSkin || p.isSkinLost)
+    if (p.isSkinLost)
+        return {StepStatus::Blocked, StepReason::SkinLost};
+    if (!p.hasSkin)
         return {StepStatus::Blocked, StepReason::NoSkin};
     return {StepStatus::ToDo, StepReason::None};
 }

@@ -49,7 +49,7 @@ struct StepState {
 
 /// All that the states of the steps depend on.
 struct Progress {
-    bool hasSkin = false;
+    bool hasSkin = false;  ///< its network is known
     bool isSkinLost = false;
     std::size_t neighbourLinks = 0;
     std::size_t modules = 0;
@@ -73,7 +73,7 @@ using StepStates = std::array<StepState, kSteps.size()>;
 
 [[nodiscard]] StepStates stepStates(const Progress& progress);
 
-/// The first step that is not done and can be worked on.
+/// The first step that is not done and can be worked on; Export where there is none.
 [[nodiscard]] Step nextStep(const StepStates& states);
 
 }  // namespace skincal

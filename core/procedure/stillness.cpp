@@ -53,11 +53,13 @@ void StillnessMeter::clear() {
 std::optional<double> StillnessMeter::movement() const {
     if (samples_.empty())
         return std::nullopt;
-    const auto from = samples_.back().time - options_.window;
-    if (samples_.back().time - samples_.front().time < options_.window / 2)
+    const auto newest = samples_.back().time;
+    const auto oldest = std::find_if(samples_.begin(), samples_.end(),
+                                     [&](const Sample& sample) { return sample.time >= newest - options_.window; });
+    if (newest - oldest->time < options_.window / 2)
         return std::nullopt;
     std::vector<Moments> moments(modules_.size());
-    for (auto sample = samples_.rbegin(); sample != samples_.rend() && sample->time >= from; ++sample) {
+    for (auto sample = oldest; sample != samples_.end(); ++sample) {
         for (std::size_t u = 0; u < modules_.size(); ++u) {
             if (sample->acceleration[u])
                 moments[u].add(*sample->acceleration[u]);
@@ -92,7 +94,9 @@ std::vector<GravityReading> StillnessMeter::meansSince(std::chrono::microseconds
         if (of.count < 2)
             continue;
         const double n = of.count;
-        readings.push_back({pose, modules_[u], of.sum / n, std::sqrt(of.variance() / n), of.count});
+        const double sigma = std::sqrt(of.variance() / n);
+        readings.push_back(
+            {pose, modules_[u], of.sum / n, sigma < kSmallestSigma ? std::nullopt : std::optional(sigma), of.count});
     }
     return readings;
 }

@@ -30,15 +30,18 @@ class StillnessMeter {
     void clear();
 
     /// How much readings have scattered during the window, standard deviation per axis, rms over the modules, m/s^2.
-    /// Nothing before half a window is full.
+    /// Nothing where what came during the window spans less than half of it: at the beginning, after a gap.
     [[nodiscard]] std::optional<double> movement() const;
     [[nodiscard]] bool isAtRest() const;
 
     /// Mean of each module since `from`, with the standard deviation of that mean and how many samples it is of;
-    /// modules with fewer than two samples have none. At most kKept is remembered.
+    /// modules with fewer than two samples have none. No standard deviation where it is below kSmallestSigma: a sensor
+    /// whose steps are coarser than its noise reads the same again and again and still is not exact. At most kKept is
+    /// remembered.
     [[nodiscard]] std::vector<GravityReading> meansSince(std::chrono::microseconds from, int pose) const;
 
     static constexpr std::chrono::seconds kKept{3};
+    static constexpr double kSmallestSigma = 1e-6;  ///< m/s^2, the smallest that recordings take
 
   private:
     struct Sample {
@@ -51,8 +54,8 @@ class StillnessMeter {
     std::deque<Sample> samples_;
 };
 
-/// Largest turn between a pose and the nearest of those captured: the angle between what modules read, median over
-/// those that have both, rad; pi where there is none.
+/// Turn between a pose and the nearest of those captured: the angle between what modules read, median over those that
+/// have both, rad; pi where there is none. Turns about gravity don't show.
 [[nodiscard]] double angleToNearestPose(std::span<const GravityReading> captured, std::span<const GravityReading> now);
 
 }  // namespace skincal

@@ -1,0 +1,257 @@
+#include "core/procedure/connection.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "core/geometry/random.h"
+#include "tests/unit/procedure/machine_table.h"
+
+namespace skincal {
+namespace {
+
+using namespace connection;
+using enum Connection::Phase;
+using ConnectionRow = Row<Connection, Event, Effect>;
+
+constexpr StartTimer kWait{std::chrono::milliseconds(3000)};
+constexpr std::nullopt_t kNothing = std::nullopt;
+
+Connection stateIn(Connection::Phase phase) {
+    switch (phase) {
+        case Exploring:
+            return {phase, 2, {}};
+        case Connected:
+            return {phase, 5, {}};
+        case Lost:
+            return {phase, 0, "earlier"};
+        default:
+            return {phase, 0, {}};
+    }
+}
+
+TEST(Connection, DoesWhatTheTableSays) {
+    const ConnectionRow table[] = {
+        {Disconnected, Connect{}, Opening, {OpenDevice{}, kWait}},
+        {Disconnected, Disconnect{}, kNothing, {}},
+        {Disconnected, Opened{}, kNothing, {}},
+        {Disconnected, Closed{}, kNothing, {}},
+        {Disconnected, Failed{"late"}, kNothing, {}},
+        {Disconnected, ModuleFound{}, kNothing, {}},
+        {Disconnected, Explored{}, kNothing, {}},
+        {Disconnected, TimedOut{}, kNothing, {}},
+
+        {Opening, Connect{}, kNothing, {}},
+        {Opening, Disconnect{}, Disconnected, {CloseDevice{}, StopTimer{}}},
+        {Opening, Opened{}, Exploring, {Explore{}, kWait}},
+        {Opening, Closed{}, kNothing, {}},
+        {Opening, Failed{"no such port"}, Lost, {CloseDevice{}, StopTimer{}}},
+        {Opening, ModuleFound{}, kNothing, {}},
+        {Opening, Explored{}, kNothing, {}},
+        {Opening, TimedOut{}, Lost, {CloseDevice{}, StopTimer{}}},
+
+        {Exploring, Connect{}, kNothing, {}},
+        {Exploring, Disconnect{}, Disconnected, {CloseDevice{}, StopTimer{}}},
+        {Exploring, Opened{}, kNothing, {}},
+        {Exploring, Closed{}, Lost, {CloseDevice{}, StopTimer{}}},
+        {Exploring, Failed{"garbled"}, Lost, {CloseDevice{}, StopTimer{}}},
+        {Exploring, ModuleFound{}, Exploring, {kWait}},
+        {Exploring, Explored{}, Connected, {StopTimer{}}},
+        {Exploring, TimedOut{}, Lost, {CloseDevice{}, StopTimer{}}},
+
+        {Connected, Connect{}, Exploring, {Explore{}, kWait}},
+        {Connected, Disconnect{}, Disconnected, {CloseDevice{}, StopTimer{}}},
+        {Connected, Opened{}, kNothing, {}},
+        {Connected, Closed{}, Lost, {CloseDevice{}, StopTimer{}}},
+        {Connected, Failed{"pulled"}, Lost, {CloseDevice{}, StopTimer{}}},
+        {Connected, ModuleFound{}, kNothing, {}},
+        {Connected, Explored{}, kNothing, {}},
+        {Connected, TimedOut{}, kNothing, {}},
+
+        {Lost, Connect{}, Opening, {OpenDevice{}, kWait}},
+        {Lost, Disconnect{}, Disconnected, {}},
+        {Lost, Opened{}, kNothing, {}},
+        {Lost, Closed{}, kNothing, {}},
+        {Lost, Failed{"late"}, kNothing, {}},
+        {Lost, ModuleFound{}, kNothing, {}},
+        {Lost, Explored{}, kNothing, {}},
+        {Lost, TimedOut{}, kNothing, {}},
+    };
+    static_assert(std::size(table) == pairs<Event>(Lost));
+    expectTable<Connection, Event, Effect>(table, stateIn);
+}
+
+TEST(Connection, SaysWhyItWasLost) {
+    EXPECT_EQ(step(stateIn(Opening), Failed{"no such port"}).state.why, "no such port");
+    EXPECT_EQ(step(stateIn(Connected), Failed{"pulled"}).state.why, "pulled");
+    std::set<std::string> reasons;
+    reasons.insert(step(stateIn(Connected), Closed{}).state.why);
+    reasons.insert(step(stateIn(Opening), TimedOut{}).state.why);
+    reasons.insert(step(Connection{Exploring, 0, {}}, TimedOut{}).state.why);
+    reasons.insert(step(Connection{Exploring, 1, {}}, TimedOut{}).state.why);
+    EXPECT_EQ(reasons.size(), 4U);
+    EXPECT_FALSE(reasons.contains(""));
+    EXPECT_EQ(step(stateIn(Lost), Connect{}).state.why, "");
+}
+
+TEST(Connection, ALateClosedDoesNotSpoilTheNextConnection) {
+    Connection state = step(stateIn(Connected), Disconnect{}).state;
+    for (const Event& event : std::vector<Event>{Connect{}, Closed{}, Opened{}, ModuleFound{}, Explored{}})
+        state = step(state, event).state;
+    EXPECT_TRUE((state == Connection{Connected, 1, {}}));
+}
+
+Event randomEvent(Random& random) {
+    switch (random.index(10)) {
+        case 0:
+            return Disconnect{};
+        case 1:
+            return Closed{};
+        case 2:
+            return Failed{"broken"};
+        case 3:
+            return Explored{};
+        case 4:
+            return TimedOut{};
+        case 5:
+        case 6:
+            return Opened{};
+        case 7:
+            return ModuleFound{};
+        default:
+            return Connect{};
+    }
+}
+
+TEST(Connection, HoldsItsPromisesWhateverComes) {
+    Random random(1, "connection");
+    std::size_t explorations = 0;
+    for (int run = 0; run < 2000; ++run) {
+        Connection state;
+        bool isToldToOpen = false;
+        bool isOpen = false;
+        bool isTimed = false;
+        std::size_t found = 0;
+        for (int i = 0; i < 40; ++i) {
+            const Event event = randomEvent(random);
+            isOpen = (isOpen || (isToldToOpen && std::holds_alternative<Opened>(event))) &&
+                     !std::holds_alternative<Closed>(event);
+            found += std::holds_alternative<ModuleFound>(event) ? 1 : 0;
+            const auto next = step(state, event);
+            state = next.state;
+            for (const Effect& effect : next.effects) {
+                if (std::holds_alternative<OpenDevice>(effect)) {
+                    EXPECT_FALSE(isToldToOpen) << "opened twice";
+                    isToldToOpen = true;
+                } else if (std::holds_alternative<CloseDevice>(effect)) {
+                    EXPECT_TRUE(isToldToOpen) << "closed twice";
+                    isToldToOpen = isOpen = false;
+                } else if (std::holds_alternative<Explore>(effect)) {
+                    EXPECT_TRUE(isOpen) << "explores a closed device";
+                    found = 0;
+                    ++explorations;
+                } else {
+                    isTimed = std::holds_alternative<StartTimer>(effect);
+                }
+            }
+            const bool waits = state.phase == Opening || state.phase == Exploring;
+            EXPECT_EQ(isTimed, waits);
+            EXPECT_EQ(isToldToOpen, waits || state.phase == Connected) << "left open, or closed in use";
+            EXPECT_EQ(state.why.empty(), state.phase != Lost);
+            if (state.phase == Exploring) {
+                EXPECT_EQ(state.found, found);
+            }
+            if (waits) {
+                EXPECT_EQ(step(state, TimedOut{}).state.phase, Lost) << "waits for ever";
+            }
+        }
+    }
+    EXPECT_GT(explorations, 1000U);
+}
+
+/// A device whose reports come late, after the operator has changed their mind several times.
+struct LateDevice {
+    Random& random;
+    bool isOpen = false;
+    std::deque<Event> reports{};
+
+    void open() {
+        isOpen = random.uniform() < 0.8;
+        if (isOpen)
+            reports.emplace_back(Opened{});
+        else if (random.uniform() < 0.5)
+            reports.emplace_back(Failed{"no such port"});
+    }
+    void close() {
+        if (isOpen)
+            reports.emplace_back(Closed{});
+        isOpen = false;
+    }
+    void explore() {
+        if (!isOpen)
+            return;
+        for (std::size_t n = random.index(4); n > 0; --n)
+            reports.emplace_back(ModuleFound{});
+        if (random.uniform() < 0.8)
+            reports.emplace_back(Explored{});
+    }
+};
+
+TEST(Connection, AgreesWithADeviceThatReportsLate) {
+    Random random(2, "late");
+    std::array<int, 5> ends{};
+    for (int run = 0; run < 5000; ++run) {
+        LateDevice device{random};
+        Connection state;
+        bool isTimed = false;
+        const auto send = [&](const Event& event) {
+            const auto next = step(state, event);
+            state = next.state;
+            for (const Effect& effect : next.effects) {
+                if (std::holds_alternative<OpenDevice>(effect))
+                    device.open();
+                else if (std::holds_alternative<CloseDevice>(effect))
+                    device.close();
+                else if (std::holds_alternative<Explore>(effect))
+                    device.explore();
+                else
+                    isTimed = std::holds_alternative<StartTimer>(effect);
+            }
+        };
+        const auto deliver = [&] {
+            const Event event = device.reports.front();
+            device.reports.pop_front();
+            send(event);
+        };
+        for (int i = 0; i < 30; ++i) {
+            const double what = random.uniform();
+            if (what < 0.2)
+                send(Connect{});
+            else if (what < 0.3)
+                send(Disconnect{});
+            else if (what < 0.35)
+                device.close();  // the cable was pulled
+            else if (!device.reports.empty())
+                deliver();
+        }
+        // Left alone, it comes to an end that is the truth.
+        for (int i = 0; i < 100 && (isTimed || !device.reports.empty()); ++i) {
+            if (!device.reports.empty()) {
+                deliver();
+            } else {
+                isTimed = false;
+                send(TimedOut{});
+            }
+        }
+        EXPECT_FALSE(isTimed);
+        EXPECT_TRUE(device.reports.empty());
+        EXPECT_EQ(device.isOpen, state.phase == Connected);
+        EXPECT_TRUE(state.phase == Connected || state.phase == Disconnected || state.phase == Lost);
+        ++ends.at(static_cast<std::size_t>(state.phase));
+    }
+    for (const auto end : {Connected, Disconnected, Lost})
+        EXPECT_GT(ends.at(static_cast<std::size_t>(end)), 200);
+}
+
+}  // namespace
+}  // namespace skincal

@@ -16,6 +16,9 @@ ScanPresenter::ScanPresenter(Workbench& workbench, QObject* parent)
         emit stateChanged();
     });
     connect(&workbench.session(), &Session::decisionsChanged, this, &ScanPresenter::stateChanged);
+    const auto countPictures = [this] { picturesOfAScan_ = codedScan(modules(), 0).size(); };
+    connect(&workbench.session(), &Session::skinChanged, this, countPictures);
+    countPictures();
     connect(&watcher_, &QFutureWatcherBase::finished, this, &ScanPresenter::decodingFinished);
     if (workbench.camera() != nullptr)
         attachCamera();
@@ -51,16 +54,20 @@ QString ScanPresenter::obstacle() const {
 void ScanPresenter::start(const std::optional<std::string>& replaced) {
     if (!obstacle().isEmpty() || state_.isRunning())
         return;
-    std::vector<ModuleId> modules;
-    for (const SkinModule& module : workbench_.session().measured().skin.modules)
-        modules.push_back(module.id);
     replaced_ = replaced;
     // Words change from scan to scan: what two modules that look alike confuse in one view they don't in the next.
-    lit_ = codedScan(modules, workbench_.session().measured().views.size());
+    lit_ = codedScan(modules(), workbench_.session().measured().views.size());
     pictures_ = std::make_shared<Pictures>(lit_.size());
     frames_.assign(lit_.size(), {});
     began_ = Clock::now();
     handle(scan_run::Start{lit_.size()});
+}
+
+std::vector<ModuleId> ScanPresenter::modules() const {
+    std::vector<ModuleId> modules;
+    for (const SkinModule& module : workbench_.session().measured().skin.modules)
+        modules.push_back(module.id);
+    return modules;
 }
 
 void ScanPresenter::pause() {
@@ -186,14 +193,11 @@ void ScanPresenter::act(const scan_run::Effect& effect) {
 }
 
 void ScanPresenter::decode() {
-    std::vector<ModuleId> modules;
-    for (const SkinModule& module : workbench_.session().measured().skin.modules)
-        modules.push_back(module.id);
     cancelled_ = std::make_shared<std::atomic<bool>>(false);
     RunContext context;
     context.isCancelled = [cancelled = cancelled_] { return cancelled->load(); };
     watcher_.setFuture(QtConcurrent::run([frames = frames_, pictures = std::shared_ptr<const Pictures>(pictures_),
-                                          modules = std::move(modules), context = std::move(context)]() mutable {
+                                          modules = modules(), context = std::move(context)]() mutable {
         return std::make_shared<Outcome>(decodeScan(std::move(frames), std::move(pictures), modules, context));
     }));
 }

@@ -36,6 +36,9 @@ class ScanPresenter : public QObject {
     [[nodiscard]] double done() const;
     [[nodiscard]] std::optional<std::chrono::milliseconds> timeLeft() const;
 
+    /// How many pictures a scan takes.
+    [[nodiscard]] std::size_t picturesOfAScan() const { return picturesOfAScan_; }
+
     /// The view whose detections are shown.
     [[nodiscard]] const std::string& shownView() const { return detections_.view(); }
     void showView(const std::string& view);
@@ -56,6 +59,7 @@ class ScanPresenter : public QObject {
     void scanned(const std::string& view, double moved_px);
 
   private:
+    [[nodiscard]] std::vector<ModuleId> modules() const;
     void attachCamera();
     void attachSkin();
     void handle(const scan_run::Event& event);
@@ -78,6 +82,7 @@ class ScanPresenter : public QObject {
     Clock::time_point began_;
     std::shared_ptr<std::atomic<bool>> cancelled_;
     QFutureWatcher<std::shared_ptr<Outcome>> watcher_;
+    std::size_t picturesOfAScan_ = 0;
     bool isActive_ = false;
     bool isCameraRunning_ = false;
 };

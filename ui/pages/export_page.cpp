@@ -1,0 +1,118 @@
+#include "ui/pages/export_page.h"
+
+#include <QDir>
+#include <QFileDialog>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QStandardPaths>
+
+namespace skincal {
+namespace {
+
+constexpr int kPreviewLines = 200;
+
+QString suggestedFile(const QString& suffix) {
+    const QString documents = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
+    return QDir(documents.isEmpty() ? QDir::homePath() : documents).filePath(QStringLiteral("skin") + suffix);
+}
+
+}  // namespace
+
+ExportPage::ExportPage(ExportPresenter& presenter, QWidget* parent)
+    : Page(tr("Export"), tr("Give the body to the robot. Files are written whole or not at all."), parent),
+      presenter_(presenter),
+      formats_(new QListWidget),
+      description_(mutedLabel()),
+      preview_(new QPlainTextEdit),
+      file_(new QLineEdit),
+      write_(new QPushButton(tr("Write"))),
+      outcome_(mutedLabel()) {
+    auto* row = new QHBoxLayout;
+    for (const ExportFormat& format : presenter.formats())
+        formats_->addItem(format.name);
+    formats_->setObjectName(QStringLiteral("formats"));
+    formats_->setAccessibleName(tr("Formats"));
+    formats_->setMaximumWidth(150);
+    formats_->setCurrentRow(0);
+    row->addWidget(formats_);
+    auto* column = new QVBoxLayout;
+    column->addWidget(description_);
+    preview_->setReadOnly(true);
+    preview_->setLineWrapMode(QPlainTextEdit::NoWrap);
+    preview_->setAccessibleName(tr("Preview of the file"));
+    QFont fixed(QStringLiteral("monospace"));
+    fixed.setStyleHint(QFont::Monospace);
+    fixed.setPointSize(9);
+    preview_->setFont(fixed);
+    column->addWidget(preview_, 1);
+    row->addLayout(column, 1);
+    body().addLayout(row, 1);
+    auto* target = new QHBoxLayout;
+    file_->setObjectName(QStringLiteral("file"));
+    file_->setAccessibleName(tr("File"));
+    file_->setText(suggestedFile(presenter.formats().front().suffix));
+    auto* browse = new QPushButton(tr("Choose …"));
+    browse->setToolTip(tr("Choose where to write the file"));
+    write_->setObjectName(QStringLiteral("write"));
+    write_->setProperty("primary", true);
+    write_->setToolTip(tr("Write the file; one that is there is replaced once the new one is complete"));
+    target->addWidget(file_, 1);
+    target->addWidget(browse);
+    target->addWidget(write_);
+    body().addLayout(target);
+    body().addWidget(outcome_);
+
+    connect(formats_, &QListWidget::currentRowChanged, this, [this] {
+        QString name = file_->text();
+        for (const ExportFormat& format : presenter_.formats()) {
+            if (name.endsWith(format.suffix))
+                name.chop(format.suffix.size());
+        }
+        file_->setText(name + presenter_.formats()[format()].suffix);
+        refresh();
+    });
+    connect(browse, &QPushButton::clicked, this, &ExportPage::browse);
+    connect(write_, &QPushButton::clicked, this, &ExportPage::write);
+    connect(&presenter, &ExportPresenter::changed, this, [this] {
+        outcome_->clear();
+        refresh();
+    });
+    refresh();
+}
+
+std::size_t ExportPage::format() const {
+    return static_cast<std::size_t>(std::max(0, formats_->currentRow()));
+}
+
+void ExportPage::refresh() {
+    description_->setText(presenter_.formats()[format()].description);
+    const QString preview = presenter_.preview(format(), kPreviewLines);
+    preview_->setPlainText(preview.isEmpty() ? tr("There is no placed module to export yet.") : preview);
+    write_->setEnabled(presenter_.body() != nullptr);
+}
+
+void ExportPage::browse() {
+    const QString chosen = QFileDialog::getSaveFileName(
+        this, tr("Export"), file_->text(),
+        tr("%1 (*%2)").arg(presenter_.formats()[format()].name, presenter_.formats()[format()].suffix));
+    if (!chosen.isEmpty())
+        file_->setText(chosen);
+}
+
+void ExportPage::write() {
+    const QString complaint = presenter_.write(format(), file_->text().toStdString());
+    if (complaint.isEmpty()) {
+        const BodyQuality& quality = presenter_.body()->quality;
+        outcome_->setText(tr("Written: %1, %2 of %3 modules.")
+                              .arg(file_->text())
+                              .arg(quality.modulesPlaced)
+                              .arg(quality.modulesTotal));
+        return;
+    }
+    outcome_->setText(complaint);
+    emit failed(complaint);
+}
+
+}  // namespace skincal

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <QLabel>
+#include <QVBoxLayout>
+#include <QWidget>
+
+namespace skincal {
+
+/// What every page has: its name, what it is for, and room below.
+class Page : public QWidget {
+    Q_OBJECT
+  public:
+    Page(const QString& title, const QString& purpose, QWidget* parent);
+
+    /// The page is shown or not any more: devices run only while somebody looks.
+    virtual void setActive(bool active) { Q_UNUSED(active) }
+
+  protected:
+    [[nodiscard]] QVBoxLayout& body() { return *layout_; }
+
+  private:
+    QVBoxLayout* layout_;
+};
+
+/// A line of small print.
+[[nodiscard]] QLabel* mutedLabel(const QString& text = {});
+
+}  // namespace skincal

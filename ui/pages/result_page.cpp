@@ -1,0 +1,137 @@
+#include "ui/pages/result_page.h"
+
+#include <QHeaderView>
+#include <QListWidget>
+#include <QTableWidget>
+#include <algorithm>
+#include <cmath>
+
+#include "ui/widgets/theme.h"
+
+namespace skincal {
+namespace {
+
+QString verdictOf(Trust trust) {
+    switch (trust) {
+        case Trust::Good:
+            return ResultPage::tr("Good");
+        case Trust::Usable:
+            return ResultPage::tr("Usable, with reservations");
+        default:
+            return ResultPage::tr("Not to be trusted");
+    }
+}
+
+/// Standard deviations of the positions of placed modules, m, rising.
+std::vector<double> positionSigmas(const BodyModel& body) {
+    std::vector<double> sigmas;
+    for (const BodyModule& module : body.modules) {
+        if (module.T_body_module && module.covariance)
+            sigmas.push_back(std::sqrt(module.covariance->bottomRightCorner<3, 3>().trace() / 3));
+    }
+    std::sort(sigmas.begin(), sigmas.end());
+    return sigmas;
+}
+
+}  // namespace
+
+ResultPage::ResultPage(Workbench& workbench, QWidget* parent)
+    : Page(tr("Result"), tr("Every placed module, how well it is known, and whether to believe it."), parent),
+      workbench_(workbench),
+      verdict_(new QLabel),
+      reason_(mutedLabel()),
+      figures_(new QTableWidget),
+      reasons_(new QListWidget) {
+    verdict_->setObjectName(QStringLiteral("instruction"));
+    body().addWidget(verdict_);
+    body().addWidget(reason_);
+    figures_->setColumnCount(2);
+    figures_->setObjectName(QStringLiteral("figures"));
+    figures_->setAccessibleName(tr("Quality"));
+    figures_->horizontalHeader()->hide();
+    figures_->verticalHeader()->hide();
+    figures_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+    figures_->horizontalHeader()->setStretchLastSection(true);
+    figures_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    figures_->setSelectionMode(QAbstractItemView::NoSelection);
+    body().addWidget(figures_, 3);
+    body().addWidget(mutedLabel(tr("What to know about it:")));
+    reasons_->setWordWrap(true);
+    reasons_->setAccessibleName(tr("Reasons for the verdict"));
+    body().addWidget(reasons_, 2);
+    connect(&workbench.session(), &Session::solutionChanged, this, &ResultPage::refresh);
+    connect(&workbench.session(), &Session::solvingChanged, this, &ResultPage::refresh);
+    refresh();
+}
+
+std::vector<std::pair<QString, QString>> ResultPage::figuresOf(const Solution& solution) {
+    const BodyModel& body = solution.body;
+    const BodyQuality& quality = body.quality;
+    std::vector<std::pair<QString, QString>> rows;
+    rows.emplace_back(tr("Modules placed"), tr("%1 of %2").arg(quality.modulesPlaced).arg(quality.modulesTotal));
+    const auto placedPatches = std::count_if(body.patches.begin(), body.patches.end(),
+                                             [](const BodyPatch& patch) { return patch.T_body_patch.has_value(); });
+    rows.emplace_back(tr("Patches placed"), tr("%1 of %2").arg(placedPatches).arg(body.patches.size()));
+    const auto placedViews = std::count_if(body.views.begin(), body.views.end(),
+                                           [](const BodyView& view) { return view.T_body_camera.has_value(); });
+    rows.emplace_back(tr("Views used"), tr("%1 of %2").arg(placedViews).arg(body.views.size()));
+    const auto unseen = std::count_if(body.modules.begin(), body.modules.end(),
+                                      [](const BodyModule& module) { return module.T_body_module && !module.seen; });
+    rows.emplace_back(tr("Placed by gravity and links alone"), QString::number(unseen));
+    if (const auto sigmas = positionSigmas(body); !sigmas.empty()) {
+        rows.emplace_back(tr("Position, standard deviation (median)"),
+                          tr("%1 mm").arg(1e3 * sigmas[sigmas.size() / 2], 0, 'f', 2));
+        rows.emplace_back(tr("Position, standard deviation (worst)"), tr("%1 mm").arg(1e3 * sigmas.back(), 0, 'f', 2));
+    }
+    const auto add = [&](const QString& name, const std::optional<double>& value, double factor, const QString& unit,
+                         int digits) {
+        if (value)
+            rows.emplace_back(name, tr("%1 %2").arg(factor * *value, 0, 'f', digits).arg(unit));
+    };
+    add(tr("Spots from where the body has them (rms)"), quality.residual_rms_px, 1, tr("px"), 3);
+    add(tr("Ports of neighbours apart (rms)"), quality.link_mismatch_rms, 1e3, tr("mm"), 2);
+    add(tr("Ports of neighbours apart (widest)"), quality.link_mismatch_max, 1e3, tr("mm"), 2);
+    add(tr("Gravity (rms)"), quality.gravity_residual_rms, 1, tr("m/s²"), 3);
+    rows.emplace_back(tr("Solved in"), tr("%1 s").arg(solution.seconds, 0, 'f', 2));
+    return rows;
+}
+
+void ResultPage::refresh() {
+    const auto& solution = workbench_.session().solution();
+    figures_->setRowCount(0);
+    reasons_->clear();
+    if (!solution) {
+        verdict_->setText(tr("No body yet"));
+        reason_->setText(tr("Capture poses and scan a view first."));
+        return;
+    }
+    const Theme theme = Theme::current();
+    const BodyQuality& quality = solution->body.quality;
+    const bool isPlaced = quality.modulesPlaced > 0;
+    verdict_->setText(isPlaced ? verdictOf(quality.trust) : tr("Shapes of patches, not placed yet"));
+    const QColor colour = quality.trust == Trust::NotToBeTrusted ? theme.bad
+                          : quality.trust == Trust::Usable       ? theme.attention
+                                                                 : theme.good;
+    verdict_->setStyleSheet(QStringLiteral("color: %1").arg((isPlaced ? colour : theme.text).name()));
+    reason_->setText(workbench_.session().isSolving() ? tr("Newer data are being solved …")
+                     : isPlaced
+                         ? tr("All figures are of the newest data. Colours and ellipsoids of the 3D view are chosen "
+                              "above it.")
+                         : tr("Scan a view to place them."));
+    for (const auto& [name, figure] : figuresOf(*solution)) {
+        const int row = figures_->rowCount();
+        figures_->insertRow(row);
+        figures_->setItem(row, 0, new QTableWidgetItem(name));
+        figures_->setItem(row, 1, new QTableWidgetItem(figure));
+    }
+    for (const auto* texts : {&quality.warnings, &quality.missing}) {
+        for (const std::string& text : *texts)
+            reasons_->addItem(QString::fromStdString(text));
+    }
+    for (const Shortfall& shortfall : solution->shortfalls)
+        reasons_->addItem(QString::fromStdString(shortfall.text));
+    if (reasons_->count() == 0)
+        reasons_->addItem(tr("Nothing is missing, and nothing disagrees."));
+}
+
+}  // namespace skincal

@@ -1,0 +1,76 @@
+#include "ui/pages/views_page.h"
+
+#include <QPushButton>
+#include <QSplitter>
+
+#include "ui/presenters/scan_presenter.h"
+#include "ui/widgets/image_conversion.h"
+#include "ui/widgets/overlap_graph.h"
+#include "ui/widgets/picture_view.h"
+
+namespace skincal {
+
+ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, QWidget* parent)
+    : Page(tr("Move the camera"),
+           tr("Look at the body from further places until every patch is placed. Neighbouring views should overlap."),
+           parent),
+      presenter_(presenter),
+      scan_(scan),
+      instruction_(new QLabel),
+      reason_(mutedLabel()),
+      move_(new QPushButton(tr("Move the camera there"))),
+      scanHere_(new QPushButton(tr("Scan from here"))),
+      graph_(new OverlapGraph),
+      picture_(new PictureView) {
+    instruction_->setObjectName(QStringLiteral("instruction"));
+    instruction_->setWordWrap(true);
+    body().addWidget(instruction_);
+    body().addWidget(reason_);
+    auto* buttons = new QHBoxLayout;
+    move_->setObjectName(QStringLiteral("moveCamera"));
+    move_->setVisible(presenter.hasHands());
+    move_->setToolTip(tr("The simulated rig carries its camera to the suggested place, shown in the 3D view"));
+    scanHere_->setObjectName(QStringLiteral("scanHere"));
+    scanHere_->setProperty("primary", true);
+    scanHere_->setToolTip(tr("Take a new view from where the camera stands now"));
+    buttons->addWidget(move_);
+    buttons->addWidget(scanHere_);
+    buttons->addStretch();
+    body().addLayout(buttons);
+    picture_->setPlaceholder(tr("No picture: choose a camera first."));
+    auto* splitter = new QSplitter(Qt::Vertical);
+    splitter->addWidget(picture_);
+    splitter->addWidget(graph_);
+    splitter->setStretchFactor(0, 3);
+    splitter->setStretchFactor(1, 2);
+    splitter->setChildrenCollapsible(false);
+    body().addWidget(splitter, 1);
+
+    connect(move_, &QPushButton::clicked, &presenter, &ViewsPresenter::moveCamera);
+    connect(scanHere_, &QPushButton::clicked, this, &ViewsPage::scanAsked);
+    connect(&presenter, &ViewsPresenter::changed, this, &ViewsPage::refresh);
+    connect(&scan, &ScanPresenter::stateChanged, this, &ViewsPage::refresh);
+    connect(&scan, &ScanPresenter::pictureChanged, this, [this] {
+        if (isActive_)
+            picture_->setImage(toImage(scan_.picture()));
+    });
+    refresh();
+}
+
+void ViewsPage::setActive(bool active) {
+    isActive_ = active;
+    scan_.setActive(active);
+    refresh();
+}
+
+void ViewsPage::refresh() {
+    instruction_->setText(presenter_.instruction());
+    reason_->setText(presenter_.reason());
+    reason_->setVisible(!presenter_.reason().isEmpty());
+    graph_->setGraph(presenter_.views(), presenter_.patches());
+    const QString obstacle = scan_.obstacle();
+    scanHere_->setEnabled(obstacle.isEmpty() && !scan_.state().isRunning());
+    scanHere_->setStatusTip(obstacle);
+}
+
+}  // namespace skincal

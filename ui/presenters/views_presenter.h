@@ -1,0 +1,56 @@
+#pragma once
+
+#include <QObject>
+
+#include "ui/presenters/workbench.h"
+
+namespace skincal {
+
+/// A patch and how far it has come.
+struct PatchState {
+    PatchId patch;
+    std::size_t modules = 0;
+    bool isPlaced = false;
+    std::vector<std::string> views;  ///< that show some of it
+};
+
+/// A view and what it shows.
+struct ViewState {
+    std::string name;
+    bool isPlaced = false;
+    bool isDropped = false;
+    std::size_t found = 0;
+    std::optional<double> residual_px;
+};
+
+/// Tells where the camera should stand next, and why.
+class ViewsPresenter : public QObject {
+    Q_OBJECT
+  public:
+    explicit ViewsPresenter(Workbench& workbench, QObject* parent = nullptr);
+
+    [[nodiscard]] const std::vector<PatchState>& patches() const { return patches_; }
+    [[nodiscard]] const std::vector<ViewState>& views() const { return views_; }
+    /// What is missing, and where to go; one sentence each.
+    [[nodiscard]] QString instruction() const;
+    [[nodiscard]] QString reason() const;
+    /// Where the camera should stand, body frame; nothing while nothing is placed or nothing is forecast.
+    [[nodiscard]] std::optional<Isometry3d> target() const;
+
+    [[nodiscard]] bool hasHands() const { return workbench_.hands.has_value(); }
+    /// The rig's camera goes there; to another of its own places where nothing is forecast.
+    void moveCamera();
+
+  signals:
+    void changed();
+
+  private:
+    void refresh();
+    [[nodiscard]] const NextView* next() const;
+
+    Workbench& workbench_;
+    std::vector<PatchState> patches_;
+    std::vector<ViewState> views_;
+};
+
+}  // namespace skincal

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <QWidget>
+#include <optional>
+#include <set>
+
+#include "ui/presenters/network_layout.h"
+
+namespace skincal {
+
+/// The network laid flat: boards in the colours of their patches, ports as dots, cables as dashed arcs.
+class NetworkView : public QWidget {
+    Q_OBJECT
+  public:
+    explicit NetworkView(QWidget* parent = nullptr);
+
+    void setNetwork(FlatNetwork network);
+    /// Those that the operator should look at.
+    void setFaulty(std::set<ModuleId> modules);
+    void setSelected(std::optional<ModuleId> module);
+    /// Its LED shines.
+    void setLit(std::optional<ModuleId> module);
+    void setPlaceholder(const QString& text);
+
+    [[nodiscard]] QPointF toWidget(const QPointF& mm) const { return transform().map(mm); }
+    [[nodiscard]] const FlatNetwork& network() const { return network_; }
+
+    [[nodiscard]] QSize sizeHint() const override { return {560, 300}; }
+    [[nodiscard]] QSize minimumSizeHint() const override { return {240, 160}; }
+
+  signals:
+    void moduleClicked(skincal::ModuleId module);
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    bool event(QEvent* event) override;
+
+  private:
+    [[nodiscard]] QTransform transform() const;
+    [[nodiscard]] const FlatModule* moduleAt(const QPointF& position) const;
+
+    FlatNetwork network_;
+    std::set<ModuleId> faulty_;
+    std::optional<ModuleId> selected_, lit_;
+    QString placeholder_;
+};
+
+}  // namespace skincal

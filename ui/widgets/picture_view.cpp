@@ -1,0 +1,147 @@
+#include "ui/widgets/picture_view.h"
+
+#include <QMouseEvent>
+#include <QPainter>
+#include <QWheelEvent>
+#include <algorithm>
+
+#include "ui/widgets/theme.h"
+
+namespace skincal {
+
+PictureView::PictureView(QWidget* parent) : QWidget(parent) {
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
+    setAccessibleName(tr("Camera picture"));
+    setMouseTracking(false);
+}
+
+void PictureView::setImage(const QImage& image) {
+    if (image.size() != image_.size()) {
+        zoom_ = 1;
+        shift_ = {};
+    }
+    image_ = image;
+    update();
+}
+
+void PictureView::setMarks(std::vector<PictureMark> marks) {
+    marks_ = std::move(marks);
+    update();
+}
+
+void PictureView::setSelected(std::optional<ModuleId> module) {
+    selected_ = module;
+    update();
+}
+
+void PictureView::setPlaceholder(const QString& text) {
+    placeholder_ = text;
+    update();
+}
+
+QTransform PictureView::transform() const {
+    if (image_.isNull())
+        return {};
+    const double fit =
+        std::min(static_cast<double>(width()) / image_.width(), static_cast<double>(height()) / image_.height());
+    const double scale = fit * zoom_;
+    QTransform result;
+    result.translate(0.5 * width() + shift_.x(), 0.5 * height() + shift_.y());
+    result.scale(scale, scale);
+    result.translate(-0.5 * image_.width(), -0.5 * image_.height());
+    return result;
+}
+
+QPointF PictureView::toWidget(const QPointF& pixel) const {
+    return transform().map(pixel + QPointF(0.5, 0.5));
+}
+
+void PictureView::paintEvent(QPaintEvent*) {
+    const Theme theme = Theme::current();
+    QPainter painter(this);
+    painter.setClipRect(rect());
+    painter.fillRect(rect(), theme.isDark ? QColor("#111318") : QColor("#e3e6eb"));
+    if (image_.isNull()) {
+        painter.setPen(theme.muted);
+        painter.drawText(rect().adjusted(16, 16, -16, -16), Qt::AlignCenter | Qt::TextWordWrap, placeholder_);
+        return;
+    }
+    painter.setRenderHint(QPainter::SmoothPixmapTransform, zoom_ < 4);
+    painter.setTransform(transform());
+    painter.drawImage(QPointF(0, 0), image_);
+    painter.resetTransform();
+    painter.setRenderHint(QPainter::Antialiasing);
+    for (const PictureMark& mark : marks_) {
+        const QPointF at = toWidget(mark.pixel);
+        const bool isSelected = selected_ == mark.module;
+        painter.setPen(QPen(mark.colour, isSelected ? 3 : 1.6));
+        painter.setBrush(Qt::NoBrush);
+        const double radius = isSelected ? 11 : 7;
+        painter.drawEllipse(at, radius, radius);
+        if (mark.isCrossed) {
+            painter.drawLine(at + QPointF(-radius, -radius), at + QPointF(radius, radius));
+            painter.drawLine(at + QPointF(-radius, radius), at + QPointF(radius, -radius));
+        }
+        if (mark.expected)
+            painter.drawLine(at, toWidget(*mark.expected));
+        if (isSelected || zoom_ > 2 || marks_.size() <= 60) {
+            painter.setPen(mark.colour);
+            painter.drawText(at + QPointF(radius + 2, -radius + 4), QString::number(mark.module.value));
+        }
+    }
+}
+
+void PictureView::wheelEvent(QWheelEvent* event) {
+    const double factor = std::pow(1.0015, event->angleDelta().y());
+    const double zoom = std::clamp(zoom_ * factor, 1.0, 32.0);
+    // What is under the mouse stays there.
+    const QPointF from = event->position() - QPointF(0.5 * width(), 0.5 * height()) - shift_;
+    shift_ += from * (1 - zoom / zoom_);
+    zoom_ = zoom;
+    if (zoom_ == 1)
+        shift_ = {};
+    update();
+}
+
+void PictureView::mousePressEvent(QMouseEvent* event) {
+    pressedAt_ = event->position();
+    isDragging_ = false;
+}
+
+void PictureView::mouseMoveEvent(QMouseEvent* event) {
+    const QPointF way = event->position() - pressedAt_;
+    if (!isDragging_ && way.manhattanLength() < 4)
+        return;
+    isDragging_ = true;
+    if (zoom_ > 1) {
+        shift_ += way;
+        pressedAt_ = event->position();
+        update();
+    }
+}
+
+void PictureView::mouseReleaseEvent(QMouseEvent* event) {
+    if (isDragging_)
+        return;
+    constexpr double kReach = 14;
+    const PictureMark* nearest = nullptr;
+    double best = kReach;
+    for (const PictureMark& mark : marks_) {
+        const QPointF way = toWidget(mark.pixel) - event->position();
+        const double distance = std::hypot(way.x(), way.y());
+        if (distance < best) {
+            best = distance;
+            nearest = &mark;
+        }
+    }
+    if (nearest != nullptr)
+        emit markClicked(nearest->module);
+}
+
+void PictureView::mouseDoubleClickEvent(QMouseEvent*) {
+    zoom_ = 1;
+    shift_ = {};
+    update();
+}
+
+}  // namespace skincal

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <QImage>
+#include <QWidget>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/ids.h"
+
+namespace skincal {
+
+/// A mark on a picture.
+struct PictureMark {
+    QPointF pixel;
+    QColor colour;
+    ModuleId module;
+    bool isCrossed = false;             ///< what does not count
+    std::optional<QPointF> expected{};  ///< where the body has it; a line leads there
+};
+
+/// A camera's picture, as large as the widget allows, with marks that can be clicked. The wheel zooms, a drag shifts.
+class PictureView : public QWidget {
+    Q_OBJECT
+  public:
+    explicit PictureView(QWidget* parent = nullptr);
+
+    void setImage(const QImage& image);
+    [[nodiscard]] const QImage& image() const { return image_; }
+    void setMarks(std::vector<PictureMark> marks);
+    [[nodiscard]] const std::vector<PictureMark>& marks() const { return marks_; }
+    void setSelected(std::optional<ModuleId> module);
+    /// What stands in the middle while there is no picture.
+    void setPlaceholder(const QString& text);
+
+    /// Where a pixel is drawn; pixel (0, 0) is the centre of the top-left one.
+    [[nodiscard]] QPointF toWidget(const QPointF& pixel) const;
+
+    [[nodiscard]] QSize sizeHint() const override { return {640, 360}; }
+    [[nodiscard]] QSize minimumSizeHint() const override { return {240, 140}; }
+
+  signals:
+    void markClicked(skincal::ModuleId module);
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+    void wheelEvent(QWheelEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void mouseDoubleClickEvent(QMouseEvent* event) override;
+
+  private:
+    [[nodiscard]] QTransform transform() const;
+
+    QImage image_;
+    std::vector<PictureMark> marks_;
+    std::optional<ModuleId> selected_;
+    QString placeholder_;
+    double zoom_ = 1;
+    QPointF shift_;
+    QPointF pressedAt_;
+    bool isDragging_ = false;
+};
+
+}  // namespace skincal

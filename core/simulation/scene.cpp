@@ -44,57 +44,6 @@ cv::Mat clouds(cv::Size size, cv::Size grain, Random& random) {
     return fine;
 }
 
-/// Wall, shelf with books, a screen and a table, behind what the camera is focused on.
-cv::Mat paintRoom(const World& world, std::size_t view, cv::Size size) {
-    const RenderOptions& options = world.scenario.pictures;
-    Random random(world.seed + 7919 * view, "background");
-    const auto fill = [&](cv::Mat& picture, double x, double y, double width, double height, double brightness) {
-        const cv::Rect area(
-            static_cast<int>(std::lround(x * size.width)), static_cast<int>(std::lround(y * size.height)),
-            static_cast<int>(std::lround(width * size.width)), static_cast<int>(std::lround(height * size.height)));
-        cv::rectangle(picture, area, cv::Scalar(brightness), cv::FILLED);
-    };
-    cv::Mat room = 1 + 0.10 * clouds(size, cv::Size(5, 4), random);
-    const double shelf = random.uniform(0.05, 0.2);
-    const double first = random.uniform(-0.1, 0.5);
-    for (int row = 0; row < 2; ++row) {
-        const double bottom = shelf + 0.19 * (row + 1);
-        fill(room, first, bottom - 0.17, 0.45, 0.17, 0.55);
-        for (double x = first + 0.005; x < first + 0.44;) {
-            const double width = random.uniform(0.008, 0.03);
-            const double height = random.uniform(0.09, 0.15);
-            if (random.uniform() < 0.85)
-                fill(room, x, bottom - height, width - 0.002, height, random.uniform(0.4, 1.7));
-            x += width;
-        }
-        fill(room, first - 0.01, bottom, 0.47, 0.02, 1.3);
-    }
-    const double screen = first < 0.2 ? random.uniform(0.6, 0.75) : random.uniform(0.02, 0.15);
-    const double top = random.uniform(0.15, 0.35);
-    fill(room, screen, top, 0.24, 0.26, 0.3);
-    fill(room, screen + 0.008, top + 0.014, 0.224, 0.225, 1.35);
-    fill(room, screen + 0.10, top + 0.26, 0.03, 0.2, 0.35);
-
-    // The table runs to the picture's lower edge; its grain is fine along one direction.
-    const double edge = random.uniform(0.62, 0.74);
-    const double slope = random.uniform(-0.03, 0.03);
-    cv::Mat wood = 1.2 + 0.06 * clouds(size, cv::Size(6, 120), random) + 0.05 * clouds(size, cv::Size(4, 4), random);
-    cv::Mat mask = cv::Mat::zeros(size, CV_8U);
-    const std::vector<cv::Point> table{{0, static_cast<int>((edge - slope) * size.height)},
-                                       {size.width, static_cast<int>((edge + slope) * size.height)},
-                                       {size.width, size.height},
-                                       {0, size.height}};
-    cv::fillConvexPoly(mask, table, cv::Scalar(255));
-    wood.copyTo(room, mask);
-    for (int box = 0; box < 3; ++box)
-        fill(room, random.uniform(0, 0.9), edge - random.uniform(0.03, 0.12), random.uniform(0.03, 0.1), 0.15,
-             random.uniform(0.5, 1.4));
-    cv::GaussianBlur(room, room, cv::Size(0, 0), 2.5);
-    constexpr double kFullTexture = 45;
-    room = options.background * (1 + options.texture / kFullTexture * (room - 1));
-    return cv::max(room, 3.0);
-}
-
 /// Points of a circle or of a regular polygon in a module's plane.
 std::vector<Vector3d> disc(const Vector3d& middle, double radius, int corners, double turn = 0) {
     std::vector<Vector3d> points;
@@ -266,8 +215,8 @@ void paintMirror(const World& world, int margin, const cv::Mat& body, const cv::
 }
 
 /// A cardboard box that somebody left in front of the camera.
-void paintOccluder(const World& world, std::size_t view, int margin, cv::Mat& scene) {
-    const Eigen::Vector4d hidden = occluderOf(world, view);
+void paintOccluder(const World& world, const Isometry3d& T_r_v, std::size_t view, int margin, cv::Mat& scene) {
+    const Eigen::Vector4d hidden = occluderOf(world, T_r_v, view);
     if (hidden[2] <= 0)
         return;
     const auto area = [&](double x, double y, double width, double height) {
@@ -292,13 +241,63 @@ double mirrorEdge(const CameraModel& camera) {
     return 0.66 * camera.height;
 }
 
-cv::Mat paintScene(const World& world, std::size_t view, int margin) {
+cv::Mat paintRoom(const World& world, std::size_t view, int margin) {
+    const cv::Size size(world.scenario.camera.width + 2 * margin, world.scenario.camera.height + 2 * margin);
+    const RenderOptions& options = world.scenario.pictures;
+    Random random(world.seed + 7919 * view, "background");
+    const auto fill = [&](cv::Mat& picture, double x, double y, double width, double height, double brightness) {
+        const cv::Rect area(
+            static_cast<int>(std::lround(x * size.width)), static_cast<int>(std::lround(y * size.height)),
+            static_cast<int>(std::lround(width * size.width)), static_cast<int>(std::lround(height * size.height)));
+        cv::rectangle(picture, area, cv::Scalar(brightness), cv::FILLED);
+    };
+    cv::Mat room = 1 + 0.10 * clouds(size, cv::Size(5, 4), random);
+    const double shelf = random.uniform(0.05, 0.2);
+    const double first = random.uniform(-0.1, 0.5);
+    for (int row = 0; row < 2; ++row) {
+        const double bottom = shelf + 0.19 * (row + 1);
+        fill(room, first, bottom - 0.17, 0.45, 0.17, 0.55);
+        for (double x = first + 0.005; x < first + 0.44;) {
+            const double width = random.uniform(0.008, 0.03);
+            const double height = random.uniform(0.09, 0.15);
+            if (random.uniform() < 0.85)
+                fill(room, x, bottom - height, width - 0.002, height, random.uniform(0.4, 1.7));
+            x += width;
+        }
+        fill(room, first - 0.01, bottom, 0.47, 0.02, 1.3);
+    }
+    const double screen = first < 0.2 ? random.uniform(0.6, 0.75) : random.uniform(0.02, 0.15);
+    const double top = random.uniform(0.15, 0.35);
+    fill(room, screen, top, 0.24, 0.26, 0.3);
+    fill(room, screen + 0.008, top + 0.014, 0.224, 0.225, 1.35);
+    fill(room, screen + 0.10, top + 0.26, 0.03, 0.2, 0.35);
+
+    // The table runs to the picture's lower edge; its grain is fine along one direction.
+    const double edge = random.uniform(0.62, 0.74);
+    const double slope = random.uniform(-0.03, 0.03);
+    cv::Mat wood = 1.2 + 0.06 * clouds(size, cv::Size(6, 120), random) + 0.05 * clouds(size, cv::Size(4, 4), random);
+    cv::Mat mask = cv::Mat::zeros(size, CV_8U);
+    const std::vector<cv::Point> table{{0, static_cast<int>((edge - slope) * size.height)},
+                                       {size.width, static_cast<int>((edge + slope) * size.height)},
+                                       {size.width, size.height},
+                                       {0, size.height}};
+    cv::fillConvexPoly(mask, table, cv::Scalar(255));
+    wood.copyTo(room, mask);
+    for (int box = 0; box < 3; ++box)
+        fill(room, random.uniform(0, 0.9), edge - random.uniform(0.03, 0.12), random.uniform(0.03, 0.1), 0.15,
+             random.uniform(0.5, 1.4));
+    cv::GaussianBlur(room, room, cv::Size(0, 0), 2.5);
+    constexpr double kFullTexture = 45;
+    room = options.background * (1 + options.texture / kFullTexture * (room - 1));
+    return cv::max(room, 3.0);
+}
+
+cv::Mat paintScene(const World& world, const Isometry3d& T_r_v, const cv::Mat& room, std::size_t view, int margin) {
     const CameraModel& camera = world.scenario.camera;
     const RenderOptions& options = world.scenario.pictures;
     const cv::Size size(camera.width + 2 * margin, camera.height + 2 * margin);
-    const cv::Mat room = paintRoom(world, view, size);
 
-    const Isometry3d T_v_r = world.T_r_v[view].inverse();
+    const Isometry3d T_v_r = T_r_v.inverse();
     std::vector<Group> groups;
     for (const Tube& tube : world.tubes)
         addTube(tube, T_v_r, groups);
@@ -322,7 +321,7 @@ cv::Mat paintScene(const World& world, std::size_t view, int margin) {
     if (world.scenario.disturbances.reflection > 0)
         paintMirror(world, margin, body, covered, scene);
     scene = body + scene.mul(1 - covered);
-    paintOccluder(world, view, margin, scene);
+    paintOccluder(world, T_r_v, view, margin, scene);
     cv::GaussianBlur(scene, scene, cv::Size(0, 0), options.blur_px);
     return cv::max(scene, 3.0);
 }

@@ -7,18 +7,12 @@
 #include <stdexcept>
 
 #include "core/geometry/random.h"
+#include "tests/unit/rig/pass.h"
 
 namespace skincal {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// Runs the event loop until the clock has come to `passed` after now.
-void pass(RigClock& clock, RigClock::Time passed) {
-    QEventLoop loop;
-    clock.at(clock.now() + passed, &loop, [&loop] { loop.quit(); });
-    loop.exec();
-}
 
 TEST(RigClock, CallsInTheOrderOfTimeThenOfAsking) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {

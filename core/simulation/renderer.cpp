@@ -50,7 +50,7 @@ FrameRenderer::FrameRenderer(const World& world, const Isometry3d& T_r_v, std::s
       frames_(frames),
       // The same whether the camera will be knocked or not, so that the first half of such a view is as it was.
       margin_(std::max(32, 4 + static_cast<int>(std::ceil(2 * world.scenario.disturbances.bump_px)))),
-      room_(paintRoom(world, view, margin_)),
+      painter_(world, view, margin_),
       noise_(kNoiseTable),
       index_(world.skin.indexById()) {
     Random random(world.seed, "noise table");
@@ -67,7 +67,7 @@ void FrameRenderer::moveCamera(const Isometry3d& T_r_v) {
     const DisturbanceOptions& disturbances = world_.scenario.disturbances;
     const CameraModel& camera = world_.scenario.camera;
     T_r_v_ = T_r_v;
-    const cv::Mat scene = paintScene(world_, T_r_v, room_, view_, margin_);
+    const cv::Mat scene = painter_.paint(T_r_v);
     background_ = scene(cv::Rect(margin_, margin_, camera.width, camera.height)).clone();
     spots_ = spotsAt(T_r_v);
     if (disturbances.bump_px > 0 && view_ % 2 == 1) {

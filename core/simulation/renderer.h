@@ -45,8 +45,8 @@ class FrameRenderer {
     Isometry3d T_r_v_;  ///< before any knock
     std::size_t view_;
     std::size_t frames_;
-    int margin_;                     ///< of room_
-    cv::Mat room_;                   ///< CV_32F, behind the body
+    int margin_;  ///< that scenes are wider than pictures
+    ScenePainter painter_;
     cv::Mat background_;             ///< CV_32F
     std::vector<Spot> spots_;        ///< per module; no peak where it can't be seen
     cv::Mat bumpedBackground_;       ///< after the camera was knocked; empty in views where it is not

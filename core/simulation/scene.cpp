@@ -44,6 +44,57 @@ cv::Mat clouds(cv::Size size, cv::Size grain, Random& random) {
     return fine;
 }
 
+/// Wall, shelf with books, a screen and a table, behind what the camera is focused on.
+cv::Mat paintRoom(const World& world, std::size_t view, cv::Size size) {
+    const RenderOptions& options = world.scenario.pictures;
+    Random random(world.seed + 7919 * view, "background");
+    const auto fill = [&](cv::Mat& picture, double x, double y, double width, double height, double brightness) {
+        const cv::Rect area(
+            static_cast<int>(std::lround(x * size.width)), static_cast<int>(std::lround(y * size.height)),
+            static_cast<int>(std::lround(width * size.width)), static_cast<int>(std::lround(height * size.height)));
+        cv::rectangle(picture, area, cv::Scalar(brightness), cv::FILLED);
+    };
+    cv::Mat room = 1 + 0.10 * clouds(size, cv::Size(5, 4), random);
+    const double shelf = random.uniform(0.05, 0.2);
+    const double first = random.uniform(-0.1, 0.5);
+    for (int row = 0; row < 2; ++row) {
+        const double bottom = shelf + 0.19 * (row + 1);
+        fill(room, first, bottom - 0.17, 0.45, 0.17, 0.55);
+        for (double x = first + 0.005; x < first + 0.44;) {
+            const double width = random.uniform(0.008, 0.03);
+            const double height = random.uniform(0.09, 0.15);
+            if (random.uniform() < 0.85)
+                fill(room, x, bottom - height, width - 0.002, height, random.uniform(0.4, 1.7));
+            x += width;
+        }
+        fill(room, first - 0.01, bottom, 0.47, 0.02, 1.3);
+    }
+    const double screen = first < 0.2 ? random.uniform(0.6, 0.75) : random.uniform(0.02, 0.15);
+    const double top = random.uniform(0.15, 0.35);
+    fill(room, screen, top, 0.24, 0.26, 0.3);
+    fill(room, screen + 0.008, top + 0.014, 0.224, 0.225, 1.35);
+    fill(room, screen + 0.10, top + 0.26, 0.03, 0.2, 0.35);
+
+    // The table runs to the picture's lower edge; its grain is fine along one direction.
+    const double edge = random.uniform(0.62, 0.74);
+    const double slope = random.uniform(-0.03, 0.03);
+    cv::Mat wood = 1.2 + 0.06 * clouds(size, cv::Size(6, 120), random) + 0.05 * clouds(size, cv::Size(4, 4), random);
+    cv::Mat mask = cv::Mat::zeros(size, CV_8U);
+    const std::vector<cv::Point> table{{0, static_cast<int>((edge - slope) * size.height)},
+                                       {size.width, static_cast<int>((edge + slope) * size.height)},
+                                       {size.width, size.height},
+                                       {0, size.height}};
+    cv::fillConvexPoly(mask, table, cv::Scalar(255));
+    wood.copyTo(room, mask);
+    for (int box = 0; box < 3; ++box)
+        fill(room, random.uniform(0, 0.9), edge - random.uniform(0.03, 0.12), random.uniform(0.03, 0.1), 0.15,
+             random.uniform(0.5, 1.4));
+    cv::GaussianBlur(room, room, cv::Size(0, 0), 2.5);
+    constexpr double kFullTexture = 45;
+    room = options.background * (1 + options.texture / kFullTexture * (room - 1));
+    return cv::max(room, 3.0);
+}
+
 /// Points of a circle or of a regular polygon in a module's plane.
 std::vector<Vector3d> disc(const Vector3d& middle, double radius, int corners, double turn = 0) {
     std::vector<Vector3d> points;
@@ -178,9 +229,12 @@ Group cardGroup(const Card& card, const Isometry3d& T_v_r) {
 }
 
 /// Draws over `fine` and marks in `covered` what was drawn on.
-void drawGroup(const Group& group, const World& world, int margin, cv::Mat& fine, cv::Mat& covered) {
+/// @return a box round it, within the picture
+cv::Rect drawGroup(const Group& group, const World& world, int margin, cv::Mat& fine, cv::Mat& covered) {
     constexpr int kShift = 4;
-    constexpr double kUnits = 1 << kShift;
+    constexpr int kUnit = 1 << kShift;
+    constexpr double kUnits = kUnit;
+    cv::Rect drawn;
     for (const Group::Polygon& polygon : group.polygons) {
         std::vector<cv::Point> corners;
         for (const Vector3d& p : polygon.corners) {
@@ -197,7 +251,11 @@ void drawGroup(const Group& group, const World& world, int margin, cv::Mat& fine
         cv::fillConvexPoly(fine, corners, cv::Scalar(levelOf(world.scenario.pictures, polygon.brightness)), cv::LINE_8,
                            kShift);
         cv::fillConvexPoly(covered, corners, cv::Scalar(1.0), cv::LINE_8, kShift);
+        const cv::Rect box = cv::boundingRect(corners);
+        drawn |= cv::Rect(cv::Point(box.x / kUnit - 2, box.y / kUnit - 2),
+                          cv::Point(box.br().x / kUnit + 2, box.br().y / kUnit + 2));
     }
+    return drawn & cv::Rect({0, 0}, fine.size());
 }
 
 /// The room with the body seen once more, upside down, in a polished surface in front of it.
@@ -241,89 +299,68 @@ double mirrorEdge(const CameraModel& camera) {
     return 0.66 * camera.height;
 }
 
-cv::Mat paintRoom(const World& world, std::size_t view, int margin) {
-    const cv::Size size(world.scenario.camera.width + 2 * margin, world.scenario.camera.height + 2 * margin);
-    const RenderOptions& options = world.scenario.pictures;
-    Random random(world.seed + 7919 * view, "background");
-    const auto fill = [&](cv::Mat& picture, double x, double y, double width, double height, double brightness) {
-        const cv::Rect area(
-            static_cast<int>(std::lround(x * size.width)), static_cast<int>(std::lround(y * size.height)),
-            static_cast<int>(std::lround(width * size.width)), static_cast<int>(std::lround(height * size.height)));
-        cv::rectangle(picture, area, cv::Scalar(brightness), cv::FILLED);
-    };
-    cv::Mat room = 1 + 0.10 * clouds(size, cv::Size(5, 4), random);
-    const double shelf = random.uniform(0.05, 0.2);
-    const double first = random.uniform(-0.1, 0.5);
-    for (int row = 0; row < 2; ++row) {
-        const double bottom = shelf + 0.19 * (row + 1);
-        fill(room, first, bottom - 0.17, 0.45, 0.17, 0.55);
-        for (double x = first + 0.005; x < first + 0.44;) {
-            const double width = random.uniform(0.008, 0.03);
-            const double height = random.uniform(0.09, 0.15);
-            if (random.uniform() < 0.85)
-                fill(room, x, bottom - height, width - 0.002, height, random.uniform(0.4, 1.7));
-            x += width;
-        }
-        fill(room, first - 0.01, bottom, 0.47, 0.02, 1.3);
-    }
-    const double screen = first < 0.2 ? random.uniform(0.6, 0.75) : random.uniform(0.02, 0.15);
-    const double top = random.uniform(0.15, 0.35);
-    fill(room, screen, top, 0.24, 0.26, 0.3);
-    fill(room, screen + 0.008, top + 0.014, 0.224, 0.225, 1.35);
-    fill(room, screen + 0.10, top + 0.26, 0.03, 0.2, 0.35);
-
-    // The table runs to the picture's lower edge; its grain is fine along one direction.
-    const double edge = random.uniform(0.62, 0.74);
-    const double slope = random.uniform(-0.03, 0.03);
-    cv::Mat wood = 1.2 + 0.06 * clouds(size, cv::Size(6, 120), random) + 0.05 * clouds(size, cv::Size(4, 4), random);
-    cv::Mat mask = cv::Mat::zeros(size, CV_8U);
-    const std::vector<cv::Point> table{{0, static_cast<int>((edge - slope) * size.height)},
-                                       {size.width, static_cast<int>((edge + slope) * size.height)},
-                                       {size.width, size.height},
-                                       {0, size.height}};
-    cv::fillConvexPoly(mask, table, cv::Scalar(255));
-    wood.copyTo(room, mask);
-    for (int box = 0; box < 3; ++box)
-        fill(room, random.uniform(0, 0.9), edge - random.uniform(0.03, 0.12), random.uniform(0.03, 0.1), 0.15,
-             random.uniform(0.5, 1.4));
-    cv::GaussianBlur(room, room, cv::Size(0, 0), 2.5);
-    constexpr double kFullTexture = 45;
-    room = options.background * (1 + options.texture / kFullTexture * (room - 1));
-    return cv::max(room, 3.0);
+ScenePainter::ScenePainter(const World& world, std::size_t view, int margin)
+    : world_(world), view_(view), margin_(margin) {
+    const CameraModel& camera = world.scenario.camera;
+    const cv::Size size(camera.width + 2 * margin, camera.height + 2 * margin);
+    room_ = paintRoom(world, view, size);
+    fine_ = cv::Mat::zeros(size * kFine, CV_32F);
+    fineCovered_ = cv::Mat::zeros(size * kFine, CV_32F);
+    body_.create(size, CV_32F);
+    covered_.create(size, CV_32F);
 }
 
-cv::Mat paintScene(const World& world, const Isometry3d& T_r_v, const cv::Mat& room, std::size_t view, int margin) {
-    const CameraModel& camera = world.scenario.camera;
-    const RenderOptions& options = world.scenario.pictures;
-    const cv::Size size(camera.width + 2 * margin, camera.height + 2 * margin);
-
-    const Isometry3d T_v_r = T_r_v.inverse();
+void ScenePainter::paintBody(const Isometry3d& T_v_r) {
     std::vector<Group> groups;
-    for (const Tube& tube : world.tubes)
+    for (const Tube& tube : world_.tubes)
         addTube(tube, T_v_r, groups);
-    addPlate(world, T_v_r, groups);
-    for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
-        addModule(T_v_r * world.T_r_u[u], world.trueTemplate(u), groups);
+    addPlate(world_, T_v_r, groups);
+    for (std::size_t u = 0; u < world_.T_r_u.size(); ++u)
+        addModule(T_v_r * world_.T_r_u[u], world_.trueTemplate(u), groups);
     std::stable_sort(groups.begin(), groups.end(), [](const Group& x, const Group& y) { return x.depth > y.depth; });
-    for (const Card& card : world.cards)
+    for (const Card& card : world_.cards)
         groups.push_back(cardGroup(card, T_v_r));
 
-    cv::Mat fine = cv::Mat::zeros(size * kFine, CV_32F);
-    cv::Mat fineCovered = cv::Mat::zeros(size * kFine, CV_32F);
+    const auto fineBox = [&] { return cv::Rect(box_.tl() * kFine, box_.size() * kFine); };
+    fine_(fineBox()).setTo(0);
+    fineCovered_(fineBox()).setTo(0);
+    cv::Rect drawn;
     for (const Group& group : groups)
-        drawGroup(group, world, margin, fine, fineCovered);
-    cv::Mat body;
-    cv::Mat covered;
-    cv::resize(fine, body, size, 0, 0, cv::INTER_AREA);
-    cv::resize(fineCovered, covered, size, 0, 0, cv::INTER_AREA);
+        drawn |= drawGroup(group, world_, margin_, fine_, fineCovered_);
+    const cv::Rect all({0, 0}, body_.size());
+    // Wide enough that averages at the edge are of nothing, and where a mirror shows it, all.
+    constexpr int kMore = 16;
+    box_ = cv::Rect(cv::Point(drawn.x / kFine - kMore, drawn.y / kFine - kMore),
+                    cv::Point(drawn.br().x / kFine + kMore, drawn.br().y / kFine + kMore)) &
+           all;
+    if (world_.scenario.disturbances.reflection > 0)
+        box_ = all;
+    if (box_.empty())
+        return;
+    cv::Mat body = body_(box_);
+    cv::Mat covered = covered_(box_);
+    cv::resize(fine_(fineBox()), body, box_.size(), 0, 0, cv::INTER_AREA);
+    cv::resize(fineCovered_(fineBox()), covered, box_.size(), 0, 0, cv::INTER_AREA);
+}
 
-    cv::Mat scene = room.clone();
-    if (world.scenario.disturbances.reflection > 0)
-        paintMirror(world, margin, body, covered, scene);
-    scene = body + scene.mul(1 - covered);
-    paintOccluder(world, T_r_v, view, margin, scene);
-    cv::GaussianBlur(scene, scene, cv::Size(0, 0), options.blur_px);
-    return cv::max(scene, 3.0);
+cv::Mat ScenePainter::paint(const Isometry3d& T_r_v) {
+    paintBody(T_r_v.inverse());
+    room_.copyTo(scene_);
+    if (world_.scenario.disturbances.reflection > 0)
+        paintMirror(world_, margin_, body_, covered_, scene_);
+    if (!box_.empty()) {
+        // body + scene (1 - covered)
+        cv::Mat scene = scene_(box_);
+        cv::Mat covered = covered_(box_);
+        cv::subtract(1, covered, covered);
+        cv::multiply(scene, covered, scene);
+        cv::add(scene, body_(box_), scene);
+    }
+    paintOccluder(world_, T_r_v, view_, margin_, scene_);
+    cv::Mat blurred;
+    cv::GaussianBlur(scene_, blurred, cv::Size(0, 0), world_.scenario.pictures.blur_px);
+    cv::max(blurred, 3.0, blurred);
+    return blurred;
 }
 
 cv::Mat turnScene(const cv::Mat& scene, const CameraModel& camera, const Matrix3d& R_v_b) {

@@ -25,7 +25,7 @@ Vector3d BodyForces::at(const Vector3d& p_r) const {
 }
 
 HeldBody::HeldBody(const Vector3d& up_r, const Vector3d& pivot_r, Time start, std::uint64_t seed)
-    : from_r_(up_r), start_(start), begin_(start - kTurn - kSettle), pivot_r_(pivot_r) {
+    : from_r_(up_r), begin_(start - kTurn - kSettle), pivot_r_(pivot_r) {
     Random random(seed, "tremble");
     for (Sine& sine : sines_)
         sine = {random.uniform(4, 12), random.uniform(0, 360 * kDegree)};
@@ -35,6 +35,7 @@ void HeldBody::turn(const Vector3d& up_r, Time now) {
     trembleBefore_ = trembleAt(now);
     from_r_ = up(now);
     begin_ = now;
+    ++turns_;
     const Vector3d axis = from_r_.cross(up_r);
     angle_ = std::atan2(axis.norm(), from_r_.dot(up_r));
     axis_r_ = axis.norm() > 1e-9 ? axis.normalized() : from_r_.unitOrthogonal();
@@ -72,11 +73,12 @@ double HeldBody::trembleAt(Time time) const {
 }
 
 Vector3d HeldBody::sines(Time time, std::size_t first) const {
+    constexpr double kAnother = 2.4;  // rad: no two turns tremble alike
     Vector3d sum = Vector3d::Zero();
     for (std::size_t i = 0; i < 3 * kSinesPerAxis; ++i) {
         const Sine& sine = sines_.at(first + i);
-        sum[static_cast<Eigen::Index>(i % 3)] +=
-            std::sin(360 * kDegree * sine.frequency * secondsOf(time - start_) + sine.phase);
+        const double angle = 360 * kDegree * sine.frequency * secondsOf(time - begin_);
+        sum[static_cast<Eigen::Index>(i % 3)] += std::sin(angle + sine.phase + kAnother * turns_);
     }
     return sum;
 }

@@ -22,6 +22,7 @@ struct BodyForces {
 
 /// A body in somebody's hands, who turns it over and holds it still again. While it is turned the hands tremble: sines
 /// of 4 to 12 Hz, 0.5 m/s^2 rms per axis, and the body sways by a degree; afterwards that dies out to exactly nothing.
+/// How it trembles depends on the seed, the number of the turn and the time since it began alone.
 class HeldBody {
   public:
     using Time = std::chrono::microseconds;
@@ -31,7 +32,7 @@ class HeldBody {
 
     /// @param up_r     unit vector that points against gravity at first, the body at rest
     /// @param pivot_r  what it is turned about
-    /// @param start    time from which on it is held
+    /// @param start    it has been at rest since then
     HeldBody(const Vector3d& up_r, const Vector3d& pivot_r, Time start, std::uint64_t seed);
 
     /// Turns it from how it is held at `now` by the shortest way, where that is not unique by any. Of a body that is
@@ -57,8 +58,8 @@ class HeldBody {
     Vector3d from_r_;
     Vector3d axis_r_ = Vector3d::UnitX();  ///< of up's way in the body
     double angle_ = 0;
-    Time start_;
     Time begin_;  ///< of the latest turn
+    int turns_ = 0;
     double trembleBefore_ = 0;
     Vector3d pivot_r_;
     std::array<Sine, 18> sines_{};  ///< three per axis, of the tremble and of the sway

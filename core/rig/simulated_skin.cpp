@@ -56,8 +56,7 @@ SimulatedSkin::SimulatedSkin(SimulatedRig& rig, QObject* parent)
       order_(floodOrder(world_->skin)),
       noise_(world_->seed, "streamed noise"),
       touchNoise_(world_->seed, "touch noise"),
-      touch_(world_),
-      feltAt_(rig.now()) {
+      touch_(world_) {
     connect(&rig, &SimulatedRig::skinPulled, this, &SimulatedSkin::unplugged);
     connect(&rig, &QObject::destroyed, this, &SimulatedSkin::shut);
 }
@@ -216,7 +215,8 @@ void SimulatedSkin::sampleAcceleration(Time time) {
 }
 
 void SimulatedSkin::sampleTactile(Time time) {
-    touch_.advance(rig_->contact(), std::max(0.0, std::chrono::duration<double>(time - feltAt_).count()));
+    const std::chrono::duration<double> passed = time - feltAt_.value_or(time);
+    touch_.advance(rig_->contact(), std::max(0.0, passed.count()));
     feltAt_ = time;
     const BodyForces forces = rig_->forces(time);
     TactileSample sample;

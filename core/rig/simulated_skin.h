@@ -60,7 +60,7 @@ class SimulatedSkin : public SkinDevice {
     Random noise_;
     Random touchNoise_;
     TouchField touch_;
-    Time feltAt_;
+    std::optional<Time> feltAt_;
     State state_ = State::Closed;
     std::uint64_t session_ = 0;
     std::uint64_t exploration_ = 0;

@@ -238,6 +238,7 @@ TEST(SimulatedCamera, TwoRunsGiveTheSamePicturesAtTheSameTimes) {
         SimulatedCamera camera(rig);
         std::vector<std::pair<RigClock::Time, cv::Mat>> pictures;
         std::vector<Vector3d> readings;
+        std::vector<float> temperatures;
         const auto start = rig.now();
         QObject::connect(&camera, &FrameSource::frameArrived, &camera, [&](const CameraFrame& frame) {
             pictures.emplace_back(frame.time - start, frame.image);
@@ -246,23 +247,33 @@ TEST(SimulatedCamera, TwoRunsGiveTheSamePicturesAtTheSameTimes) {
         QObject::connect(&skin, &SkinDevice::accelerationArrived, &skin, [&](const AccelerationSample& sample) {
             readings.push_back(sample.readings.front().acceleration);
         });
-        QObject::connect(&skin, &SkinDevice::opened, &skin, [&] { skin.streamAcceleration(true); });
+        QObject::connect(&skin, &SkinDevice::tactileArrived, &skin, [&](const TactileSample& sample) {
+            temperatures.push_back(sample.readings.front().temperature);
+        });
+        QObject::connect(&skin, &SkinDevice::opened, &skin, [&] {
+            skin.streamAcceleration(true);
+            skin.streamTactile(true);
+        });
+        rig.touch(rig.world().T_r_u.front().translation(), 1);
         skin.open();
         camera.start();
         rig.turnBody({1, 1, 0});
         pass(rig.clock(), 200ms);
         rig.moveCamera(rig.suggestedViews()[1]);
         pass(rig.clock(), 300ms);
-        return std::pair(pictures, readings);
+        return std::tuple(pictures, readings, temperatures);
     };
     const auto first = run();
     const auto second = run();
-    ASSERT_EQ(first.first.size(), second.first.size());
-    for (std::size_t i = 0; i < first.first.size(); ++i) {
-        EXPECT_EQ(first.first[i].first, second.first[i].first);
-        EXPECT_EQ(difference(first.first[i].second, second.first[i].second), 0);
+    const auto& pictures = std::get<0>(first);
+    const auto& pictures2 = std::get<0>(second);
+    ASSERT_EQ(pictures.size(), pictures2.size());
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        EXPECT_EQ(pictures[i].first, pictures2[i].first);
+        EXPECT_EQ(difference(pictures[i].second, pictures2[i].second), 0);
     }
-    EXPECT_EQ(first.second, second.second);
+    EXPECT_TRUE(std::get<1>(first) == std::get<1>(second));
+    EXPECT_EQ(std::get<2>(first), std::get<2>(second));
 }
 
 TEST(SimulatedCamera, InRealTimePicturesAreNewOrLeftOut) {

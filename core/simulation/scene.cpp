@@ -343,9 +343,28 @@ void ScenePainter::paintBody(const Isometry3d& T_v_r) {
     cv::resize(fineCovered_(fineBox()), covered, box_.size(), 0, 0, cv::INTER_AREA);
 }
 
+void ScenePainter::placeRoom(const Isometry3d& T_r_v) {
+    if (view_ >= world_.T_r_v.size() || T_r_v.matrix() == world_.T_r_v[view_].matrix()) {
+        room_.copyTo(scene_);
+        return;
+    }
+    constexpr double kDistance = 3;  // m
+    const CameraModel& camera = world_.scenario.camera;
+    const Isometry3d T_h_v = world_.T_r_v[view_].inverse() * T_r_v;
+    const Vector3d turn = so3Log(T_h_v.linear());
+    const Vector2d middle(camera.cx + margin_, camera.cy + margin_);
+    const Vector2d shift(camera.fx * (turn.y() + T_h_v.translation().x() / kDistance),
+                         camera.fy * (-turn.x() + T_h_v.translation().y() / kDistance));
+    const Eigen::Matrix2d roll = Eigen::Rotation2Dd(turn.z()).toRotationMatrix();
+    const Vector2d offset = middle + shift - roll * middle;
+    const cv::Matx23d toRoom(roll(0, 0), roll(0, 1), offset.x(), roll(1, 0), roll(1, 1), offset.y());
+    cv::warpAffine(room_, scene_, toRoom, room_.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                   cv::BORDER_REFLECT_101);
+}
+
 cv::Mat ScenePainter::paint(const Isometry3d& T_r_v) {
     paintBody(T_r_v.inverse());
-    room_.copyTo(scene_);
+    placeRoom(T_r_v);
     if (world_.scenario.disturbances.reflection > 0)
         paintMirror(world_, margin_, body_, covered_, scene_);
     if (!box_.empty()) {

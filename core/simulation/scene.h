@@ -16,10 +16,13 @@ class ScenePainter {
     /// @param margin  pixels more than the picture on each side, for a camera that is knocked afterwards
     ScenePainter(const World& world, std::size_t view, int margin);
 
+    /// The room is painted for the view's own pose; for others it is shifted and rolled as what is three metres away,
+    /// and mirrored where it ends. Of a view that the world has not it stays as it is.
     [[nodiscard]] cv::Mat paint(const Isometry3d& T_r_v);
 
   private:
     void paintBody(const Isometry3d& T_v_r);
+    void placeRoom(const Isometry3d& T_r_v);
 
     const World& world_;
     std::size_t view_;

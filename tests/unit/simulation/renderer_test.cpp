@@ -53,6 +53,31 @@ TEST(Renderer, ACameraMovedThereSeesWhatOneMadeThereSees) {
     }
 }
 
+TEST(Renderer, TheRoomMovesAsTheCameraTurns) {
+    const World world = worldWith([](Scenario& s) { s.pictures.readNoise = s.pictures.shotNoise = 0; });
+    const CameraModel& camera = world.scenario.camera;
+    FrameRenderer renderer(world, 0, 10);
+    const cv::Mat before = renderer.render({}, 0);
+    const Vector3d turn(0.8 * kDegree, -0.6 * kDegree, 0);
+    const Isometry3d& T_r_v = world.T_r_v[0];
+    renderer.moveCamera(makeIsometry(T_r_v.linear() * so3Exp(turn), T_r_v.translation()));
+    const cv::Mat after = renderer.render({}, 0);
+    // The wall above the body, and everything.
+    for (const cv::Rect& part : {cv::Rect(0, 0, 1280, 160), cv::Rect(0, 0, 1280, 720)}) {
+        cv::Mat a;
+        cv::Mat b;
+        before(part).convertTo(a, CV_32F);
+        after(part).convertTo(b, CV_32F);
+        cv::Mat window;
+        cv::createHanningWindow(window, part.size(), CV_32F);
+        const cv::Point2d shift = cv::phaseCorrelate(a, b, window);
+        EXPECT_NEAR(shift.x, -camera.fx * turn.y(), 1.5);
+        EXPECT_NEAR(shift.y, camera.fy * turn.x(), 1.5);
+    }
+    renderer.moveCamera(makeIsometry(T_r_v.linear() * so3Exp({0, 3, 0}), T_r_v.translation()));
+    EXPECT_GT(cv::mean(renderer.render({}, 0))[0], 20) << "there is a room behind the room";
+}
+
 TEST(Renderer, LightGrowsWithExposureAndClips) {
     const World world = worldWith([](Scenario& s) { s.pictures.readNoise = s.pictures.shotNoise = 0; });
     const FrameRenderer renderer(world, 0, 10);

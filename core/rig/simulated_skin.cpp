@@ -139,22 +139,23 @@ void SimulatedSkin::explore() {
         return;
     }
     ++exploration_;
-    findNext(exploration_, 0);
+    findNext(exploration_, rig_->now(), 0);
 }
 
-void SimulatedSkin::findNext(std::uint64_t exploration, std::size_t position) {
+void SimulatedSkin::findNext(std::uint64_t exploration, Time started, std::size_t position) {
+    const Time each = std::min(kFind, kFindAll / static_cast<Time::rep>(order_.size()));
     if (position == order_.size()) {
-        at(rig_->now() + kReport, [this, exploration] {
+        at(started + static_cast<Time::rep>(position) * each + kReport, [this, exploration] {
             if (exploration == exploration_)
                 emit explored(world_->skin);
         });
         return;
     }
     // Of very many, several in one go: fewer turns of the event loop.
-    const Time each = std::min(kFind, kFindAll / static_cast<Time::rep>(order_.size()));
     const std::size_t some = each >= 1ms ? 1 : static_cast<std::size_t>(1ms / std::max<Time>(each, 1us));
     const std::size_t end = std::min(order_.size(), position + some);
-    at(rig_->now() + static_cast<Time::rep>(end - position) * each, [this, exploration, position, end] {
+    // By the time of the first, so that being late doesn't add up.
+    at(started + static_cast<Time::rep>(end) * each, [this, exploration, started, position, end] {
         if (exploration != exploration_)
             return;
         const QPointer<SimulatedSkin> self(this);
@@ -164,7 +165,7 @@ void SimulatedSkin::findNext(std::uint64_t exploration, std::size_t position) {
             if (!self || session != session_ || exploration != exploration_)
                 return;
         }
-        findNext(exploration, end);
+        findNext(exploration, started, end);
     });
 }
 

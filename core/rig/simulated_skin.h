@@ -47,7 +47,7 @@ class SimulatedSkin : public SkinDevice {
     void soon(std::function<void()> what);
     void shut();
     void unplugged();
-    void findNext(std::uint64_t exploration, std::size_t position);
+    void findNext(std::uint64_t exploration, Time started, std::size_t position);
     void tick(Time when, std::uint64_t SimulatedSkin::*run, std::uint64_t started, Stream sample);
     [[nodiscard]] Vector3d readAccelerometer(std::size_t module, const BodyForces& forces, Random& chance) const;
     void sampleAcceleration(Time time);

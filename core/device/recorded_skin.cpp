@@ -39,8 +39,8 @@ void RecordedSkin::explore() {
     later([this] {
         const QPointer<RecordedSkin> self(this);
         const std::uint64_t session = session_;
-        for (std::size_t u = 0; u < skin_.modules.size(); ++u) {
-            emit moduleFound(skin_.modules[u].id);
+        for (const SkinModule& module : skin_.modules) {
+            emit moduleFound(module.id);
             if (!self || session != session_)
                 return;
         }

@@ -25,7 +25,9 @@ Vector3d BodyForces::at(const Vector3d& p_r) const {
 }
 
 HeldBody::HeldBody(const Vector3d& up_r, const Vector3d& pivot_r, Time start, std::uint64_t seed)
-    : from_r_(up_r), begin_(start - kTurn - kSettle), pivot_r_(pivot_r) {
+    : begin_(start - kTurn - kSettle) {
+    from_r_ = up_r;
+    pivot_r_ = pivot_r;
     Random random(seed, "tremble");
     for (Sine& sine : sines_)
         sine = {random.uniform(4, 12), random.uniform(0, 360 * kDegree)};

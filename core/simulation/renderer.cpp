@@ -41,27 +41,40 @@ double ledLobe(double angle, double fullAngle) {
 }
 
 FrameRenderer::FrameRenderer(const World& world, std::size_t view, std::size_t frames)
-    : world_(world), view_(view), frames_(frames), noise_(kNoiseTable), index_(world.skin.indexById()) {
+    : FrameRenderer(world, world.T_r_v[view], view, frames) {}
+
+FrameRenderer::FrameRenderer(const World& world, const Isometry3d& T_r_v, std::size_t view, std::size_t frames)
+    : world_(world),
+      T_r_v_(T_r_v),
+      view_(view),
+      frames_(frames),
+      // The same whether the camera will be knocked or not, so that the first half of such a view is as it was.
+      margin_(std::max(32, 4 + static_cast<int>(std::ceil(2 * world.scenario.disturbances.bump_px)))),
+      painter_(world, view, margin_),
+      noise_(kNoiseTable),
+      index_(world.skin.indexById()) {
     Random random(world.seed, "noise table");
     for (float& n : noise_)
         n = static_cast<float>(random.normal());
-    const DisturbanceOptions& disturbances = world.scenario.disturbances;
-    const CameraModel& camera = world.scenario.camera;
-    const Isometry3d& T_r_v = world.T_r_v[view];
-    // The same whether the camera will be knocked or not, so that the first half of such a view is as it was.
-    const int margin = std::max(32, 4 + static_cast<int>(std::ceil(2 * disturbances.bump_px)));
-    const cv::Mat scene = paintScene(world, view, margin);
-    background_ = scene(cv::Rect(margin, margin, camera.width, camera.height)).clone();
+    if (world.scenario.disturbances.person)
+        person_ = paintPerson(world.scenario.camera, world.scenario.pictures);
+    if (world.scenario.disturbances.flicker > 0)
+        lamp_ = lampLight(world.scenario.camera);
+    moveCamera(T_r_v);
+}
+
+void FrameRenderer::moveCamera(const Isometry3d& T_r_v) {
+    const DisturbanceOptions& disturbances = world_.scenario.disturbances;
+    const CameraModel& camera = world_.scenario.camera;
+    T_r_v_ = T_r_v;
+    const cv::Mat scene = painter_.paint(T_r_v);
+    background_ = scene(cv::Rect(margin_, margin_, camera.width, camera.height)).clone();
     spots_ = spotsAt(T_r_v);
-    if (disturbances.bump_px > 0 && view % 2 == 1) {
+    if (disturbances.bump_px > 0 && view_ % 2 == 1) {
         const Matrix3d R_v_b = so3Exp(disturbances.bump_px / camera.fx * Vector3d(0.6, -0.8, 0.1));
         bumpedBackground_ = turnScene(scene, camera, R_v_b);
         bumpedSpots_ = spotsAt(makeIsometry(T_r_v.linear() * R_v_b, T_r_v.translation()));
     }
-    if (disturbances.person)
-        person_ = paintPerson(camera, world.scenario.pictures);
-    if (disturbances.flicker > 0)
-        lamp_ = lampLight(camera);
 }
 
 std::vector<FrameRenderer::Spot> FrameRenderer::spotsAt(const Isometry3d& T_r_v) const {
@@ -72,7 +85,7 @@ std::vector<FrameRenderer::Spot> FrameRenderer::spotsAt(const Isometry3d& T_r_v)
     any.maxAngle = 85 * kDegree;
     any.margin_px = -20;
     for (std::size_t u = 0; u < spots.size(); ++u) {
-        if (!visiblePixel(world_, view_, u, any))
+        if (!visiblePixel(world_, T_r_v_, view_, u, any))
             continue;
         const Vector3d led_r = world_.T_r_u[u] * world_.trueTemplate(u).led;
         const auto pixel = world_.scenario.camera.project(T_r_v.inverse() * led_r);
@@ -163,7 +176,8 @@ cv::Mat FrameRenderer::expose(const cv::Mat& light, std::uint64_t noiseSeed) con
     return picture;
 }
 
-cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t frame, bool colour) const {
+cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t frame, bool colour,
+                              double exposure) const {
     colour = colour || std::any_of(lit.begin(), lit.end(), [](const LitModule& l) { return l.colour.has_value(); });
     const std::vector<Spot>& spots = bumped(frame) ? bumpedSpots_ : spots_;
     const double mirror = world_.scenario.disturbances.reflection;
@@ -198,6 +212,8 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
         // Who stands in front hides LEDs as he hides everything else.
         if (!person_.level.empty())
             passBy(light, frame);
+        if (exposure != 1)
+            light *= exposure;
         channels.push_back(expose(light, frameSeed * 3 + static_cast<std::uint64_t>(channel)));
     }
     if (!colour)

@@ -8,16 +8,26 @@
 
 namespace skincal {
 
-/// The simulated webcam at one view: LEDs with their lobe, through lens, blur, noise and clipping, on the skin before
-/// a room, with the scenario's disturbances. The picture of a frame depends on world, view, lit set and frame
-/// number alone, not on what was drawn before.
+/// The simulated webcam in one place: LEDs with their lobe, through lens, blur, noise and clipping, on the skin before
+/// a room, with the scenario's disturbances. The picture of a frame depends on world, pose and number of the view, lit
+/// set, frame number and exposure alone, not on what was drawn before. The world must outlive it.
 class FrameRenderer {
   public:
     /// @param frames  how many the scan will have: disturbances run their course over them.
     FrameRenderer(const World& world, std::size_t view, std::size_t frames);
 
+    /// A camera that stands anywhere.
+    /// @param T_r_v  its pose in the body
+    /// @param view   any number: decides by chance how the room is furnished and what stands in the way
+    FrameRenderer(const World& world, const Isometry3d& T_r_v, std::size_t view, std::size_t frames);
+
+    /// From now on as one that was made for this pose, in less time: the room stays.
+    void moveCamera(const Isometry3d& T_r_v);
+
     /// 8-bit grey, or BGR where any LED is lit in a colour or `colour` asks for it.
-    [[nodiscard]] cv::Mat render(const std::vector<LitModule>& lit, std::size_t frame, bool colour = false) const;
+    /// @param exposure  relative to the one that RenderOptions' levels are for: light grows with it, and clips.
+    [[nodiscard]] cv::Mat render(const std::vector<LitModule>& lit, std::size_t frame, bool colour = false,
+                                 double exposure = 1) const;
 
   private:
     struct Spot {
@@ -32,8 +42,11 @@ class FrameRenderer {
     [[nodiscard]] cv::Mat expose(const cv::Mat& light, std::uint64_t noiseSeed) const;
 
     const World& world_;
+    Isometry3d T_r_v_;  ///< before any knock
     std::size_t view_;
     std::size_t frames_;
+    int margin_;  ///< that scenes are wider than pictures
+    ScenePainter painter_;
     cv::Mat background_;             ///< CV_32F
     std::vector<Spot> spots_;        ///< per module; no peak where it can't be seen
     cv::Mat bumpedBackground_;       ///< after the camera was knocked; empty in views where it is not

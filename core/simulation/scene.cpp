@@ -229,9 +229,12 @@ Group cardGroup(const Card& card, const Isometry3d& T_v_r) {
 }
 
 /// Draws over `fine` and marks in `covered` what was drawn on.
-void drawGroup(const Group& group, const World& world, int margin, cv::Mat& fine, cv::Mat& covered) {
+/// @return a box round it, within the picture
+cv::Rect drawGroup(const Group& group, const World& world, int margin, cv::Mat& fine, cv::Mat& covered) {
     constexpr int kShift = 4;
-    constexpr double kUnits = 1 << kShift;
+    constexpr int kUnit = 1 << kShift;
+    constexpr double kUnits = kUnit;
+    cv::Rect drawn;
     for (const Group::Polygon& polygon : group.polygons) {
         std::vector<cv::Point> corners;
         for (const Vector3d& p : polygon.corners) {
@@ -248,7 +251,11 @@ void drawGroup(const Group& group, const World& world, int margin, cv::Mat& fine
         cv::fillConvexPoly(fine, corners, cv::Scalar(levelOf(world.scenario.pictures, polygon.brightness)), cv::LINE_8,
                            kShift);
         cv::fillConvexPoly(covered, corners, cv::Scalar(1.0), cv::LINE_8, kShift);
+        const cv::Rect box = cv::boundingRect(corners);
+        drawn |= cv::Rect(cv::Point(box.x / kUnit - 2, box.y / kUnit - 2),
+                          cv::Point(box.br().x / kUnit + 2, box.br().y / kUnit + 2));
     }
+    return drawn & cv::Rect({0, 0}, fine.size());
 }
 
 /// The room with the body seen once more, upside down, in a polished surface in front of it.
@@ -266,8 +273,8 @@ void paintMirror(const World& world, int margin, const cv::Mat& body, const cv::
 }
 
 /// A cardboard box that somebody left in front of the camera.
-void paintOccluder(const World& world, std::size_t view, int margin, cv::Mat& scene) {
-    const Eigen::Vector4d hidden = occluderOf(world, view);
+void paintOccluder(const World& world, const Isometry3d& T_r_v, std::size_t view, int margin, cv::Mat& scene) {
+    const Eigen::Vector4d hidden = occluderOf(world, T_r_v, view);
     if (hidden[2] <= 0)
         return;
     const auto area = [&](double x, double y, double width, double height) {
@@ -292,39 +299,87 @@ double mirrorEdge(const CameraModel& camera) {
     return 0.66 * camera.height;
 }
 
-cv::Mat paintScene(const World& world, std::size_t view, int margin) {
+ScenePainter::ScenePainter(const World& world, std::size_t view, int margin)
+    : world_(world), view_(view), margin_(margin) {
     const CameraModel& camera = world.scenario.camera;
-    const RenderOptions& options = world.scenario.pictures;
     const cv::Size size(camera.width + 2 * margin, camera.height + 2 * margin);
-    const cv::Mat room = paintRoom(world, view, size);
+    room_ = paintRoom(world, view, size);
+    fine_ = cv::Mat::zeros(size * kFine, CV_32F);
+    fineCovered_ = cv::Mat::zeros(size * kFine, CV_32F);
+    body_.create(size, CV_32F);
+    covered_.create(size, CV_32F);
+}
 
-    const Isometry3d T_v_r = world.T_r_v[view].inverse();
+void ScenePainter::paintBody(const Isometry3d& T_v_r) {
     std::vector<Group> groups;
-    for (const Tube& tube : world.tubes)
+    for (const Tube& tube : world_.tubes)
         addTube(tube, T_v_r, groups);
-    addPlate(world, T_v_r, groups);
-    for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
-        addModule(T_v_r * world.T_r_u[u], world.trueTemplate(u), groups);
+    addPlate(world_, T_v_r, groups);
+    for (std::size_t u = 0; u < world_.T_r_u.size(); ++u)
+        addModule(T_v_r * world_.T_r_u[u], world_.trueTemplate(u), groups);
     std::stable_sort(groups.begin(), groups.end(), [](const Group& x, const Group& y) { return x.depth > y.depth; });
-    for (const Card& card : world.cards)
+    for (const Card& card : world_.cards)
         groups.push_back(cardGroup(card, T_v_r));
 
-    cv::Mat fine = cv::Mat::zeros(size * kFine, CV_32F);
-    cv::Mat fineCovered = cv::Mat::zeros(size * kFine, CV_32F);
+    const auto fineBox = [&] { return cv::Rect(box_.tl() * kFine, box_.size() * kFine); };
+    fine_(fineBox()).setTo(0);
+    fineCovered_(fineBox()).setTo(0);
+    cv::Rect drawn;
     for (const Group& group : groups)
-        drawGroup(group, world, margin, fine, fineCovered);
-    cv::Mat body;
-    cv::Mat covered;
-    cv::resize(fine, body, size, 0, 0, cv::INTER_AREA);
-    cv::resize(fineCovered, covered, size, 0, 0, cv::INTER_AREA);
+        drawn |= drawGroup(group, world_, margin_, fine_, fineCovered_);
+    const cv::Rect all({0, 0}, body_.size());
+    // Wide enough that averages at the edge are of nothing, and where a mirror shows it, all.
+    constexpr int kMore = 16;
+    box_ = cv::Rect(cv::Point(drawn.x / kFine - kMore, drawn.y / kFine - kMore),
+                    cv::Point(drawn.br().x / kFine + kMore, drawn.br().y / kFine + kMore)) &
+           all;
+    if (world_.scenario.disturbances.reflection > 0)
+        box_ = all;
+    if (box_.empty())
+        return;
+    cv::Mat body = body_(box_);
+    cv::Mat covered = covered_(box_);
+    cv::resize(fine_(fineBox()), body, box_.size(), 0, 0, cv::INTER_AREA);
+    cv::resize(fineCovered_(fineBox()), covered, box_.size(), 0, 0, cv::INTER_AREA);
+}
 
-    cv::Mat scene = room.clone();
-    if (world.scenario.disturbances.reflection > 0)
-        paintMirror(world, margin, body, covered, scene);
-    scene = body + scene.mul(1 - covered);
-    paintOccluder(world, view, margin, scene);
-    cv::GaussianBlur(scene, scene, cv::Size(0, 0), options.blur_px);
-    return cv::max(scene, 3.0);
+void ScenePainter::placeRoom(const Isometry3d& T_r_v) {
+    if (view_ >= world_.T_r_v.size() || T_r_v.matrix() == world_.T_r_v[view_].matrix()) {
+        room_.copyTo(scene_);
+        return;
+    }
+    constexpr double kDistance = 3;  // m
+    const CameraModel& camera = world_.scenario.camera;
+    const Isometry3d T_h_v = world_.T_r_v[view_].inverse() * T_r_v;
+    const Vector3d turn = so3Log(T_h_v.linear());
+    const Vector2d middle(camera.cx + margin_, camera.cy + margin_);
+    const Vector2d shift(camera.fx * (turn.y() + T_h_v.translation().x() / kDistance),
+                         camera.fy * (-turn.x() + T_h_v.translation().y() / kDistance));
+    const Eigen::Matrix2d roll = Eigen::Rotation2Dd(turn.z()).toRotationMatrix();
+    const Vector2d offset = middle + shift - roll * middle;
+    const cv::Matx23d toRoom(roll(0, 0), roll(0, 1), offset.x(), roll(1, 0), roll(1, 1), offset.y());
+    cv::warpAffine(room_, scene_, toRoom, room_.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                   cv::BORDER_REFLECT_101);
+}
+
+cv::Mat ScenePainter::paint(const Isometry3d& T_r_v) {
+    paintBody(T_r_v.inverse());
+    placeRoom(T_r_v);
+    if (world_.scenario.disturbances.reflection > 0)
+        paintMirror(world_, margin_, body_, covered_, scene_);
+    if (!box_.empty()) {
+        // body + scene (1 - covered)
+        cv::Mat scene = scene_(box_);
+        cv::Mat covered = covered_(box_);
+        cv::subtract(1, covered, covered);
+        cv::multiply(scene, covered, scene);
+        cv::add(scene, body_(box_), scene);
+    }
+    paintOccluder(world_, T_r_v, view_, margin_, scene_);
+    cv::Mat blurred;
+    cv::GaussianBlur(scene_, blurred, cv::Size(0, 0), world_.scenario.pictures.blur_px);
+    cv::max(blurred, 3.0, blurred);
+    return blurred;
 }
 
 cv::Mat turnScene(const cv::Mat& scene, const CameraModel& camera, const Matrix3d& R_v_b) {

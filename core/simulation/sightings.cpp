@@ -34,9 +34,11 @@ bool crosses(const Card& card, const Vector3d& a, const Vector3d& b) {
     return std::abs(hit.x()) < 0.5 * card.width && std::abs(hit.y()) < 0.5 * card.height;
 }
 
-/// Pixel of a module's LED, module and camera being where they are said to be.
-std::optional<Vector2d> pixelFrom(const World& world, std::size_t view, const Isometry3d& T_r_v, std::size_t module,
-                                  const Isometry3d& T_r_u, const Visibility& visibility) {
+/// Pixel of a module's LED, module and camera being where they are said to be. What stands in the way is put there
+/// for another pose of the camera, the one before it was knocked.
+std::optional<Vector2d> pixelFrom(const World& world, std::size_t view, const Isometry3d& occluded_T_r_v,
+                                  const Isometry3d& T_r_v, std::size_t module, const Isometry3d& T_r_u,
+                                  const Visibility& visibility) {
     const Vector3d led_r = T_r_u * world.trueTemplate(module).led;
     const Vector3d camera_r = T_r_v.translation();
     const Vector3d ray = (camera_r - led_r).normalized();
@@ -57,7 +59,7 @@ std::optional<Vector2d> pixelFrom(const World& world, std::size_t view, const Is
         if (crosses(card, led_r, camera_r))
             return std::nullopt;
     }
-    const Eigen::Vector4d hidden = occluderOf(world, view);
+    const Eigen::Vector4d hidden = occluderOf(world, occluded_T_r_v, view);
     if (hidden[2] > 0 && pixel->x() > hidden[0] && pixel->x() < hidden[0] + hidden[2] && pixel->y() > hidden[1] &&
         pixel->y() < hidden[1] + hidden[3])
         return std::nullopt;
@@ -95,12 +97,16 @@ Vector2d detect(const Vector2d& pixel, const ViewOptions& options, Random& rando
 }  // namespace
 
 Eigen::Vector4d occluderOf(const World& world, std::size_t view) {
+    return occluderOf(world, world.T_r_v[view], view);
+}
+
+Eigen::Vector4d occluderOf(const World& world, const Isometry3d& T_r_v, std::size_t view) {
     if (!world.scenario.disturbances.occluder)
         return Eigen::Vector4d::Zero();
     // Round the place where some module's LED would be, so that it hides something.
     Random random(world.seed + view, "occluder");
     const std::size_t module = random.index(world.T_r_u.size());
-    const Vector3d led_v = world.T_r_v[view].inverse() * (poseAsLaid(world, module) * world.trueTemplate(module).led);
+    const Vector3d led_v = T_r_v.inverse() * (poseAsLaid(world, module) * world.trueTemplate(module).led);
     const auto pixel = world.scenario.camera.project(led_v);
     const Vector2d middle = pixel.value_or(Vector2d(world.scenario.camera.cx, world.scenario.camera.cy));
     const double size = 0.075 * world.scenario.camera.fx / std::max(0.1, led_v.z());
@@ -109,7 +115,12 @@ Eigen::Vector4d occluderOf(const World& world, std::size_t view) {
 
 std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module,
                                      const Visibility& visibility) {
-    return pixelFrom(world, view, world.T_r_v[view], module, world.T_r_u[module], visibility);
+    return visiblePixel(world, world.T_r_v[view], view, module, visibility);
+}
+
+std::optional<Vector2d> visiblePixel(const World& world, const Isometry3d& T_r_v, std::size_t view, std::size_t module,
+                                     const Visibility& visibility) {
+    return pixelFrom(world, view, T_r_v, T_r_v, module, world.T_r_u[module], visibility);
 }
 
 std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module) {
@@ -134,11 +145,11 @@ std::vector<ViewDetections> simulateDetections(const World& world) {
             const bool isMoved = &asLaid != &world.T_r_u[u];
             const bool isBumped = bump != nullptr && scannedAfterBump(world, u);
             const Isometry3d& T_r_v = isBumped ? bump->T_r_v_after : world.T_r_v[v];
-            const auto pixel = pixelFrom(world, v, T_r_v, u, world.T_r_u[u], limits);
+            const auto pixel = pixelFrom(world, v, world.T_r_v[v], T_r_v, u, world.T_r_u[u], limits);
             // What comes into sight or goes out of it by a fault must not shift the noise of all that follows.
             bool usual = pixel.has_value();
             if (isMoved || isBumped)
-                usual = pixelFrom(world, v, world.T_r_v[v], u, asLaid, limits).has_value();
+                usual = pixelFrom(world, v, world.T_r_v[v], world.T_r_v[v], u, asLaid, limits).has_value();
             if (!pixel && !usual)
                 continue;
             const Vector2d found = detect(pixel.value_or(Vector2d::Zero()), options, usual ? random : strays);

@@ -77,9 +77,15 @@ struct Visibility {
                                                    const Visibility& visibility);
 /// The same with the scenario's own limits.
 [[nodiscard]] std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module);
+/// The same of a camera that stands anywhere.
+/// @param view  any number: decides by chance what an occluder hides, see occluderOf
+[[nodiscard]] std::optional<Vector2d> visiblePixel(const World& world, const Isometry3d& T_r_v, std::size_t view,
+                                                   std::size_t module, const Visibility& visibility);
 
 /// The part of the picture that the occluder hides in a view, in pixels (x, y, width, height); empty without one.
 [[nodiscard]] Eigen::Vector4d occluderOf(const World& world, std::size_t view);
+/// The same of a camera that stands anywhere; the view's number decides by chance what is hidden.
+[[nodiscard]] Eigen::Vector4d occluderOf(const World& world, const Isometry3d& T_r_v, std::size_t view);
 
 /// True of the modules that a scan shows in its later half, when a camera that is knocked half-way has moved.
 [[nodiscard]] bool scannedAfterBump(const World& world, std::size_t module);

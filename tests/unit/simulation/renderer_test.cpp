@@ -38,6 +38,64 @@ TEST(Renderer, SameSeedSameBytesInAnyOrder) {
     EXPECT_GT(difference(a0, FrameRenderer(buildWorld(*findScenario("coded"), 10), 0, 10).render({}, 0)), 1);
 }
 
+TEST(Renderer, ACameraMovedThereSeesWhatOneMadeThereSees) {
+    for (const char* name : {"coded", "occluder", "bumped-camera", "reflection"}) {
+        const World world = buildWorld(*findScenario(name), 3);
+        FrameRenderer moved(world, world.T_r_v[0], 1, 10);
+        moved.moveCamera(world.T_r_v[1]);
+        const FrameRenderer there(world, world.T_r_v[1], 1, 10);
+        const FrameRenderer ofView(world, 1, 10);
+        for (const std::size_t frame : {0U, 7U}) {
+            const cv::Mat picture = ofView.render(allOf(world), frame);
+            EXPECT_EQ(difference(picture, there.render(allOf(world), frame)), 0) << name;
+            EXPECT_EQ(difference(picture, moved.render(allOf(world), frame)), 0) << name;
+        }
+    }
+}
+
+TEST(Renderer, TheRoomMovesAsTheCameraTurns) {
+    const World world = worldWith([](Scenario& s) { s.pictures.readNoise = s.pictures.shotNoise = 0; });
+    const CameraModel& camera = world.scenario.camera;
+    FrameRenderer renderer(world, 0, 10);
+    const cv::Mat before = renderer.render({}, 0);
+    const Vector3d turn(0.8 * kDegree, -0.6 * kDegree, 0);
+    const Isometry3d& T_r_v = world.T_r_v[0];
+    renderer.moveCamera(makeIsometry(T_r_v.linear() * so3Exp(turn), T_r_v.translation()));
+    const cv::Mat after = renderer.render({}, 0);
+    // The wall above the body, and everything.
+    for (const cv::Rect& part : {cv::Rect(0, 0, 1280, 160), cv::Rect(0, 0, 1280, 720)}) {
+        cv::Mat a;
+        cv::Mat b;
+        before(part).convertTo(a, CV_32F);
+        after(part).convertTo(b, CV_32F);
+        cv::Mat window;
+        cv::createHanningWindow(window, part.size(), CV_32F);
+        const cv::Point2d shift = cv::phaseCorrelate(a, b, window);
+        EXPECT_NEAR(shift.x, -camera.fx * turn.y(), 1.5);
+        EXPECT_NEAR(shift.y, camera.fy * turn.x(), 1.5);
+    }
+    renderer.moveCamera(makeIsometry(T_r_v.linear() * so3Exp({0, 3, 0}), T_r_v.translation()));
+    EXPECT_GT(cv::mean(renderer.render({}, 0))[0], 20) << "there is a room behind the room";
+}
+
+TEST(Renderer, LightGrowsWithExposureAndClips) {
+    const World world = worldWith([](Scenario& s) { s.pictures.readNoise = s.pictures.shotNoise = 0; });
+    const FrameRenderer renderer(world, 0, 10);
+    const cv::Mat usual = renderer.render(allOf(world), 0);
+    const cv::Mat half = renderer.render(allOf(world), 0, false, 0.5);
+    const cv::Mat fourfold = renderer.render(allOf(world), 0, false, 4);
+    for (int y = 0; y < usual.rows; ++y) {
+        for (int x = 0; x < usual.cols; ++x) {
+            const int level = usual.at<unsigned char>(y, x);
+            if (level < 255) {
+                ASSERT_NEAR(half.at<unsigned char>(y, x), 0.5 * level, 1);
+            }
+            ASSERT_NEAR(fourfold.at<unsigned char>(y, x), std::min(255, 4 * level), 2.5);
+        }
+    }
+    EXPECT_GT(cv::countNonZero(fourfold == 255), cv::countNonZero(usual == 255));
+}
+
 TEST(Renderer, NoiseDiffersFromFrameToFrameAndHasTheRightSize) {
     const World world = worldWith([](Scenario& s) {
         s.pictures.texture = 0;

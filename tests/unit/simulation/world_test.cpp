@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "core/simulation/simulated_accelerometer.h"
+
 namespace skincal {
 namespace {
 
@@ -127,6 +129,32 @@ TEST(World, SensorErrorsHaveTheSizeAskedFor) {
     }
     const double expected = std::sqrt(2.0) * scenario.sensors.misalignment * kStandardGravity;
     EXPECT_NEAR(std::sqrt(squares / static_cast<double>(askew.size())), expected, 0.05 * expected);
+}
+
+TEST(World, ReadingsAreThoseOfItsAccelerometers) {
+    for (const char* name : {"faults", "misaligned", "moved-joint"}) {
+        const World world = buildWorld(*findScenario(name), 8);
+        auto sensors = accelerometersOf(world);
+        for (SimulatedAccelerometer& sensor : sensors) {
+            EXPECT_EQ(sensor.noise, world.scenario.sensors.noise);
+            sensor.noise = 0;
+        }
+        const auto index = world.skin.indexById();
+        Random unused(1);
+        double squares = 0;
+        std::size_t count = 0;
+        for (const GravityReading& reading : simulateGravity(world)) {
+            const auto pose = static_cast<std::size_t>(reading.pose);
+            const auto& shaken = world.faults.shakenPoses;
+            if (std::any_of(shaken.begin(), shaken.end(), [&](const ShakenPose& s) { return s.pose == pose; }))
+                continue;
+            const std::size_t u = index.at(reading.module);
+            const Vector3d ideal_u = poseAtGravity(world, u).linear().transpose() * world.gravity_r[pose];
+            squares += (reading.acceleration - sensors[u].read(ideal_u, unused)).squaredNorm();
+            count += 3;
+        }
+        EXPECT_NEAR(std::sqrt(squares / static_cast<double>(count)), world.scenario.sensors.noise, 0.003) << name;
+    }
 }
 
 TEST(World, MisalignedChipsAreOneOfTheScenarios) {

@@ -1,0 +1,119 @@
+#include "core/rig/simulated_rig.h"
+
+#include <stdexcept>
+
+namespace skincal {
+namespace {
+
+std::shared_ptr<const World> worldOf(const Scenario& scenario, std::uint64_t seed) {
+    auto world = std::make_shared<World>(buildWorld(scenario, seed));
+    if (world->T_r_v.empty())
+        throw std::logic_error("SimulatedRig: a scenario needs a view");
+    return world;
+}
+
+Vector3d middleOf(const World& world) {
+    Vector3d sum = Vector3d::Zero();
+    for (const Isometry3d& T_r_u : world.T_r_u)
+        sum += T_r_u.translation();
+    return sum / static_cast<double>(world.T_r_u.size());
+}
+
+}  // namespace
+
+SimulatedRig::SimulatedRig(const Scenario& scenario, std::uint64_t seed, QObject* parent)
+    : QObject(parent),
+      world_(worldOf(scenario, seed)),
+      body_(Vector3d::UnitZ(), middleOf(*world_), clock_.now(), seed),
+      camera_(world_->T_r_v.front()),
+      commands_{{clock_.now(), {}}} {}
+
+void SimulatedRig::turnBody(const Vector3d& up_r) {
+    if (!up_r.allFinite() || up_r.norm() < 1e-9)
+        throw std::logic_error("SimulatedRig: no direction to turn the body to");
+    body_.turn(up_r.normalized(), now());
+    clock_.at(body_.restsAt(), this, [this, turn = ++turns_] {
+        if (turn == turns_)
+            emit bodyRested();
+    });
+}
+
+void SimulatedRig::moveCamera(const Isometry3d& T_r_v) {
+    if (!isRigid(T_r_v))
+        throw std::logic_error("SimulatedRig: no pose to move the camera to");
+    camera_.move(T_r_v, now());
+    restCameraAt(camera_.restsAt());
+}
+
+void SimulatedRig::knockCamera(double pixels) {
+    const bool wasMoving = !isCameraAtRest();
+    const Matrix3d R_v_k = so3Exp(pixels / world_->scenario.camera.fx * Vector3d(0.6, -0.8, 0));
+    const Isometry3d T_r_v = cameraPose();
+    camera_.jump(makeIsometry(T_r_v.linear() * R_v_k, T_r_v.translation()), now());
+    if (wasMoving)
+        restCameraAt(now());
+}
+
+void SimulatedRig::restCameraAt(Time when) {
+    clock_.at(when, this, [this, move = ++moves_] {
+        if (move == moves_)
+            emit cameraRested();
+    });
+}
+
+void SimulatedRig::touch(const Vector3d& point_r, double force) {
+    if (!point_r.allFinite() || !(force >= 0))
+        throw std::logic_error("SimulatedRig: no touch that can be felt");
+    contact_ = Contact{point_r, force};
+}
+
+void SimulatedRig::release() {
+    contact_.reset();
+}
+
+void SimulatedRig::pullSkin() {
+    if (!skinPlugged_)
+        return;
+    skinPlugged_ = false;
+    light({});
+    emit skinPulled();
+}
+
+void SimulatedRig::plugSkin() {
+    skinPlugged_ = true;
+}
+
+void SimulatedRig::pullCamera() {
+    if (!cameraPlugged_)
+        return;
+    cameraPlugged_ = false;
+    emit cameraPulled();
+}
+
+void SimulatedRig::plugCamera() {
+    cameraPlugged_ = true;
+}
+
+void SimulatedRig::setCameraLatency(std::chrono::milliseconds latency) {
+    if (latency.count() < 0)
+        throw std::logic_error("SimulatedRig: the camera can't see into the future");
+    latency_ = latency;
+}
+
+const std::vector<LitModule>& SimulatedRig::litAt(Time time) const {
+    auto command = commands_.rbegin();
+    while (std::next(command) != commands_.rend() && command->time + latency_ > time)
+        ++command;
+    return command->lit;
+}
+
+void SimulatedRig::light(std::vector<LitModule> lit) {
+    const Time time = now();
+    // Nobody asks for exposures of long ago.
+    constexpr std::chrono::seconds kLate{10};
+    while (commands_.size() > 1 && commands_[1].time + latency_ + kLate < time)
+        commands_.pop_front();
+    commands_.push_back({time, std::move(lit)});
+}
+
+}  // namespace skincal

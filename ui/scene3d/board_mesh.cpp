@@ -40,10 +40,9 @@ BoardMesh::BoardMesh() : actor_(vtkSmartPointer<vtkActor>::New()), data_(vtkSmar
     mapper->SetScalarModeToUseCellData();
     actor_->SetMapper(mapper);
     actor_->GetProperty()->SetInterpolationToFlat();
+    // Together 1 and no highlights: a board that faces the spectator has the legend's colour.
     actor_->GetProperty()->SetAmbient(0.5);
-    actor_->GetProperty()->SetDiffuse(0.55);
-    actor_->GetProperty()->SetSpecular(0.08);
-    actor_->GetProperty()->SetSpecularPower(20);
+    actor_->GetProperty()->SetDiffuse(0.5);
 }
 
 vtkActor* BoardMesh::actor() const {

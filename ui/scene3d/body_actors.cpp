@@ -50,7 +50,7 @@ Rgb cameraColour(bool dark) {
 }
 
 Rgb ellipsoidColour(bool dark) {
-    return dark ? Rgb{244, 246, 250} : Rgb{52, 58, 70};
+    return dark ? Rgb{255, 158, 196} : Rgb{204, 38, 112};
 }
 
 Rgb backgroundColour(bool dark) {
@@ -69,6 +69,7 @@ BodyActors::BodyActors(vtkRenderer& renderer)
       mesh_(emptyActor(renderer)) {
     renderer.AddActor(boards_.actor());
     asLines(*cameras_, 1.4);
+    cameras_->GetProperty()->SetOpacity(0.6);
     asLines(*guide_, 2.5);
     guide_->GetProperty()->SetRepresentationToWireframe();
     asLines(*guideFill_, 1);
@@ -80,8 +81,8 @@ BodyActors::BodyActors(vtkRenderer& renderer)
     paint(*selected_, {255, 255, 255});
     up_->GetProperty()->SetAmbient(0.45);
     up_->GetProperty()->SetDiffuse(0.6);
-    ellipsoids_->GetProperty()->SetOpacity(0.42);
-    ellipsoids_->GetProperty()->SetAmbient(0.25);
+    ellipsoids_->GetProperty()->SetOpacity(0.75);
+    ellipsoids_->GetProperty()->SetAmbient(0.35);
     ellipsoids_->GetProperty()->SetDiffuse(0.75);
     ellipsoids_->GetProperty()->SetSpecular(0.25);
     ellipsoids_->GetProperty()->SetSpecularPower(25);
@@ -151,14 +152,14 @@ void BodyActors::setGuideCamera(const std::optional<Isometry3d>& T_s_v, double s
 }
 
 Vector3d BodyActors::tipOfUp(const Vector3d& direction, const SceneLayout& layout) {
-    return layout.centre + 1.35 * layout.radius * direction.normalized();
+    return layout.centre + 1.2 * layout.radius * direction.normalized();
 }
 
 void BodyActors::setGuideUp(const std::optional<Vector3d>& direction, const SceneLayout& layout) {
     up_->SetVisibility(direction ? 1 : 0);
     if (direction)
         give(*up_,
-             arrowOf(layout.centre + 0.45 * layout.radius * direction->normalized(), *direction, 0.9 * layout.radius));
+             arrowOf(layout.centre + 0.6 * layout.radius * direction->normalized(), *direction, 0.6 * layout.radius));
 }
 
 void BodyActors::setMesh(vtkPolyData* mesh) {

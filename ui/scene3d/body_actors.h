@@ -38,7 +38,7 @@ class BodyActors {
 
     /// Tip of the arrow of setGuideUp.
     [[nodiscard]] static Vector3d tipOfUp(const Vector3d& direction, const SceneLayout& layout);
-    /// How large cameras are drawn, m.
+    /// How large cameras are drawn, m; the guide's is twice as large.
     [[nodiscard]] static double cameraSize(const SceneLayout& layout) { return 0.12 * layout.radius; }
 
   private:

@@ -132,7 +132,7 @@ double ellipsoidScale(const BodyModel& body) {
         board = std::max(board, type.portRadius());
     if (sigmas.empty() || board <= 0)
         return 1;
-    const double wanted = 0.8 * board / (3 * quantile(sigmas, 0.9));
+    const double wanted = 1.1 * board / (3 * quantile(sigmas, 0.9));
     const double power = std::pow(10, std::floor(std::log10(std::max(1.0, wanted))));
     const double digit = wanted / power;
     return std::max(1.0, power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1));

@@ -14,7 +14,7 @@ namespace skincal {
 namespace {
 
 constexpr std::size_t kMaxLabels = 12;
-constexpr double kLegendRoom_px = 120;
+constexpr double kLegendRoom_px = 190;
 constexpr double kBelow_px = 44;
 
 QColor toQt(const Rgb& colour) {
@@ -28,38 +28,52 @@ void BodyViewWidget::lookAt(std::span<const Vector3d> points, bool anew) {
     const double wide = std::max(1, width());
     const double high = std::max(1, height());
     Spectator spectator;
-    if (anew) {
-        const auto up = body_ && layout_.anyPlaced ? firstCameraUp(*body_) : std::nullopt;
-        spectator = bestSpectator(layout_.poses(), up, wide >= high);
+    if (anew && !layout_.anyPlaced) {
+        // Patches in rows face us already: a little aside, so that depth shows, and the rows stay level.
+        spectator.from = Vector3d(0.12, 0.3, 1).normalized();
+        spectator.up = (Vector3d::UnitY() - spectator.from.y() * spectator.from).normalized();
+    } else if (anew) {
+        spectator = bestSpectator(layout_.poses(), firstCameraUp(*body_), wide >= high);
     } else {
         const Vector3d ahead(camera->GetDirectionOfProjection());
         spectator.from = -ahead;
         spectator.up = Vector3d(camera->GetViewUp());
         spectator.up = (spectator.up - spectator.up.dot(ahead) * ahead).normalized();
     }
-    Eigen::AlignedBox3d box;
+    // What we turn about is in the middle of the picture as well as of the body.
+    Matrix3d R;
+    R << spectator.up.cross(spectator.from), spectator.up, spectator.from;
+    Eigen::AlignedBox3d seen;
     for (const Vector3d& point : points)
-        box.extend(point);
-    const Vector3d centre = box.isEmpty() ? Vector3d::Zero() : Vector3d(box.center());
-    const Margins margins{0.04 + std::min(0.2, kLegendRoom_px / wide), 0.04, 0.05,
-                          0.05 + std::min(0.15, kBelow_px / high)};
+        seen.extend(Vector3d(R.transpose() * point));
+    const Vector3d centre = seen.isEmpty() ? Vector3d::Zero() : Vector3d(R * seen.center());
+    // Room for the widest legend to expect, lest the body jumps with every change of colours.
+    const double legend = std::max(kLegendRoom_px, overlay_->legendSize().width() + 20);
+    const Margins margins{std::min(0.35, 0.01 + legend / wide), 0.05, 0.05, 0.05 + std::min(0.15, kBelow_px / high)};
     fitAbout(*camera, spectator, points, centre, margins, wide / high);
     movedByUser_ = false;
     scene_->requestDraw();
 }
 
+std::vector<Vector3d> BodyViewWidget::bodyPoints() const {
+    std::vector<Vector3d> points = layout_.corners();
+    if (layout_.anyPlaced && guideUp_)
+        points.push_back(BodyActors::tipOfUp(*guideUp_, layout_));
+    return points;
+}
+
 void BodyViewWidget::fitView() {
-    lookAt(layout_.corners(), false);
+    lookAt(bodyPoints(), false);
     // The direction is the user's, and kept.
     movedByUser_ = true;
 }
 
 void BodyViewWidget::resetView() {
-    lookAt(layout_.corners(), true);
+    lookAt(bodyPoints(), true);
 }
 
 void BodyViewWidget::fitEverything() {
-    std::vector<Vector3d> points = layout_.corners();
+    std::vector<Vector3d> points = bodyPoints();
     const auto add = [&](const Isometry3d& T_r_v, double size) {
         points.push_back(T_r_v.translation());
         for (const double x : {-0.8, 0.8}) {
@@ -74,9 +88,7 @@ void BodyViewWidget::fitEverything() {
         }
     }
     if (layout_.anyPlaced && guideCamera_)
-        add(*guideCamera_, 1.3 * BodyActors::cameraSize(layout_));
-    if (layout_.anyPlaced && guideUp_)
-        points.push_back(BodyActors::tipOfUp(*guideUp_, layout_));
+        add(*guideCamera_, 2 * BodyActors::cameraSize(layout_));
     lookAt(points, false);
     movedByUser_ = true;
 }
@@ -110,22 +122,22 @@ std::vector<SceneLabel> BodyViewWidget::labels() const {
     if (body_ && cameras_ && layout_.anyPlaced && body_->views.size() <= 2 * kMaxLabels) {
         for (const auto& view : body_->views) {
             if (view.T_body_camera)
-                labels.push_back({view.T_body_camera->translation(), QString::fromStdString(view.name), false});
+                labels.push_back({view.T_body_camera->translation(), QString::fromStdString(view.name), false, -14});
         }
     }
     if (selected_.size() <= kMaxLabels) {
         for (const ModuleId id : selected_) {
             if (const ShownModule* module = layout_.find(id))
-                labels.push_back({module->T_s_u.translation(), BodyWords::module(id), true});
+                labels.push_back({module->T_s_u.translation(), BodyWords::module(id), true, -16});
         }
     }
     if (layout_.anyPlaced && guideCamera_)
-        labels.push_back({guideCamera_->translation(), tr("Put the camera here"), true});
+        labels.push_back({guideCamera_->translation(), tr("Put the camera here"), true, -18});
     if (layout_.anyPlaced && guideUp_)
-        labels.push_back({BodyActors::tipOfUp(*guideUp_, layout_), tr("This way up"), true});
+        labels.push_back({BodyActors::tipOfUp(*guideUp_, layout_), tr("This way up"), true, -16});
     const std::vector<Vector3d> ends = measurePoints();
     if (ends.size() == 2)
-        labels.push_back({0.5 * (ends[0] + ends[1]), BodyWords::distance((ends[1] - ends[0]).norm()), true});
+        labels.push_back({0.5 * (ends[0] + ends[1]), BodyWords::distance((ends[1] - ends[0]).norm()), true, -18});
     return labels;
 }
 

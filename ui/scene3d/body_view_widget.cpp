@@ -9,6 +9,7 @@
 #include <QPainter>
 #include <QResizeEvent>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "ui/scene3d/body_actors.h"
@@ -60,9 +61,9 @@ void BodyViewWidget::setBody(std::shared_ptr<const BodyModel> body) {
     recolour();
     // What was looked at is no longer where it was.
     const bool anew = wasEmpty || wasPlaced != layout_.anyPlaced;
+    updateWords();
     if (anew || !movedByUser_)
         resetView();
-    updateWords();
 }
 
 void BodyViewWidget::recolour() {
@@ -116,12 +117,14 @@ void BodyViewWidget::setGuideUp(const std::optional<Vector3d>& up_r) {
     guideUp_ = up_r;
     updateGuides();
     updateWords();
+    if (!movedByUser_)
+        resetView();
 }
 
 void BodyViewWidget::updateGuides() {
     // Both are in the body frame, which has no place in the scene before the first patch has.
     const bool shown = layout_.anyPlaced;
-    actors_->setGuideCamera(shown ? guideCamera_ : std::nullopt, 1.3 * BodyActors::cameraSize(layout_));
+    actors_->setGuideCamera(shown ? guideCamera_ : std::nullopt, 2 * BodyActors::cameraSize(layout_));
     actors_->setGuideUp(shown ? guideUp_ : std::nullopt, layout_);
     scene_->requestDraw();
 }
@@ -151,8 +154,10 @@ void BodyViewWidget::setDark(bool dark) {
 
 void BodyViewWidget::setCellValues(std::span<const float> values) {
     live_.assign(values.begin(), values.end());
-    if (mode_ == ColourMode::Values)
+    if (mode_ == ColourMode::Values) {
         recolour();
+        scene_->animate();
+    }
 }
 
 void BodyViewWidget::setCellHeights(std::span<const float> heights) {
@@ -161,7 +166,7 @@ void BodyViewWidget::setCellHeights(std::span<const float> heights) {
     for (const ShownModule& module : layout_.modules)
         shown.push_back(module.index < heights.size() ? heights[module.index] : 0.0F);
     actors_->setHeights(shown);
-    scene_->requestDraw();
+    scene_->animate();
 }
 
 void BodyViewWidget::setMeasuring(bool measuring) {

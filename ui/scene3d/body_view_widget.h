@@ -120,6 +120,7 @@ class BodyViewWidget : public QWidget {
     void updateWords();
     [[nodiscard]] std::vector<SceneLabel> labels() const;
     [[nodiscard]] std::vector<Vector3d> measurePoints() const;
+    [[nodiscard]] std::vector<Vector3d> bodyPoints() const;  ///< what fitView has in view
     void lookAt(std::span<const Vector3d> points, bool anew);
 
     SceneWidget* scene_;

@@ -85,23 +85,21 @@ Legend BodyWords::legend(const BodyModel& body, const SceneLayout& layout, Colou
                                            [](const auto& value) { return value.has_value(); });
     switch (mode) {
         case ColourMode::Patch:
-            legend.title = tr("Patches");
+            legend.title = tr("Patches and their cells");
             for (std::size_t i = 0; i < std::min(kMaxPatches, body.patches.size()); ++i) {
                 const BodyPatch& patch = body.patches[i];
                 const Rgb colour = toRgb(patchColour(patch.id));
                 const bool apart = layout.anyPlaced && !patch.T_body_patch;
-                const int count = static_cast<int>(patch.modules.size());
+                const QString count = QString("%L1").arg(patch.modules.size());
+                const QString text = apart ? tr("%1: %2, not placed yet") : tr("%1: %2");
                 legend.entries.push_back(
-                    {toQt(apart ? faded(colour, dark) : colour),
-                     apart ? tr("%1: %n module(s), not placed yet", nullptr, count).arg(BodyWords::patch(patch.id))
-                           : tr("%1: %n module(s)", nullptr, count).arg(BodyWords::patch(patch.id))});
+                    {toQt(apart ? faded(colour, dark) : colour), text.arg(BodyWords::patch(patch.id), count)});
             }
             if (body.patches.size() > kMaxPatches)
-                legend.entries.push_back(
-                    {QColor(), tr("and %n more", nullptr, static_cast<int>(body.patches.size() - kMaxPatches))});
+                legend.entries.push_back({QColor(), tr("and %L1 more").arg(body.patches.size() - kMaxPatches)});
             break;
         case ColourMode::Uncertainty:
-            legend.title = tr("Uncertainty of position (1 σ)");
+            legend.title = tr("Uncertainty (1 σ)");
             if (any)
                 bar(tr("%1 mm").arg(number(values->low)), tr("%1 mm").arg(number(values->high)));
             unknown(tr("not known yet"));
@@ -113,11 +111,11 @@ Legend BodyWords::legend(const BodyModel& body, const SceneLayout& layout, Colou
             unknown(tr("in no picture"));
             break;
         case ColourMode::ViewCount:
-            legend.title = tr("Pictures that show the cell");
+            legend.title = tr("Pictures of each cell");
             bar(number(values->low), number(values->high));
             break;
         case ColourMode::LastView:
-            legend.title = tr("Last picture that shows the cell");
+            legend.title = tr("Last picture of each cell");
             if (any)
                 bar(QString::fromStdString(body.views.front().name), QString::fromStdString(body.views.back().name));
             unknown(tr("in no picture"));
@@ -133,8 +131,7 @@ Legend BodyWords::legend(const BodyModel& body, const SceneLayout& layout, Colou
 }
 
 QString BodyWords::ellipsoids(double scale) {
-    return scale > 1 ? tr("3 σ ellipsoids, drawn %L1 times as large").arg(scale, 0, 'f', 0)
-                     : tr("3 σ ellipsoids, true to scale");
+    return scale > 1 ? tr("3 σ ellipsoids, × %L1").arg(scale, 0, 'f', 0) : tr("3 σ ellipsoids");
 }
 
 QString BodyWords::empty() {
@@ -144,10 +141,8 @@ QString BodyWords::empty() {
 QString BodyWords::caption(const SceneLayout& layout) {
     if (layout.apart.empty())
         return {};
-    const int count = static_cast<int>(layout.apart.size());
-    if (!layout.anyPlaced)
-        return tr("The patches take shape. How they sit on the body shows once there are pictures.");
-    return tr("%n patch(es) without a place yet: shown below the body", nullptr, count);
+    return layout.anyPlaced ? tr("Patches without a place yet are shown below the body.")
+                            : tr("The patches take shape. Pictures will show how they sit on the body.");
 }
 
 QString BodyWords::description(const BodyModel* body, const SceneLayout& layout) {

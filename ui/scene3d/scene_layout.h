@@ -37,6 +37,7 @@ struct SceneLayout {
 /// each flattened towards the spectator: about the origin where nothing is placed yet, else below the body. Modules
 /// without either, or of an unknown type, are not shown.
 [[nodiscard]] SceneLayout layOut(const BodyModel& body);
+SceneLayout layOut(const BodyModel&& body) = delete;  // templates would be gone
 
 /// The module whose board a ray hits first, from either side.
 /// @param direction  of any length but zero; what lies behind the origin is not hit.

@@ -17,6 +17,14 @@ namespace {
 
 constexpr double kMargin = 14;
 constexpr double kPadding = 9;
+// Of the legend, in heights of its letters.
+constexpr double kLine = 1.35;
+constexpr double kSwatch = 0.75;
+constexpr double kSwatchGap = 7;
+
+bool hasBar(const Legend& legend) {
+    return !legend.low.isEmpty() || !legend.high.isEmpty();
+}
 
 QColor toQt(const Rgb& colour) {
     return {colour[0], colour[1], colour[2]};
@@ -136,30 +144,39 @@ void SceneOverlay::paintCaption(QPainter& painter) const {
     painter.drawText(box, Qt::AlignCenter | Qt::TextWordWrap, content_.caption);
 }
 
-void SceneOverlay::paintLegend(QPainter& painter) const {
+QSizeF SceneOverlay::legendSize() const {
     const Legend& legend = content_.legend;
-    QFont bold = painter.font();
+    QFont bold = font();
     bold.setBold(true);
-    const QFontMetricsF metrics(painter.font());
-    const QFontMetricsF boldMetrics(bold);
-    const double line = 1.35 * metrics.height();
-    const double swatch = 0.75 * metrics.height();
-    const bool bar = !legend.low.isEmpty() || !legend.high.isEmpty();
-    double width = boldMetrics.horizontalAdvance(legend.title);
+    const QFontMetricsF metrics(font());
+    const double line = kLine * metrics.height();
+    double width = QFontMetricsF(bold).horizontalAdvance(legend.title);
     double height = legend.title.isEmpty() ? 0 : line;
     for (const auto* entries : {&legend.entries, &legend.more}) {
         for (const LegendEntry& entry : *entries) {
-            width = std::max(width, swatch + 7 + metrics.horizontalAdvance(entry.text));
+            width = std::max(width, kSwatch * metrics.height() + kSwatchGap + metrics.horizontalAdvance(entry.text));
             height += line;
         }
     }
-    if (bar) {
+    if (hasBar(legend)) {
         width = std::max({width, 130.0, metrics.horizontalAdvance(legend.low + "      " + legend.high)});
-        height += 0.8 * line + line;
+        height += 1.8 * line;
     }
-    if (height <= 0)
+    return height > 0 ? QSizeF(width + 2 * kPadding, height + 1.4 * kPadding) : QSizeF(0, 0);
+}
+
+void SceneOverlay::paintLegend(QPainter& painter) const {
+    const Legend& legend = content_.legend;
+    const QSizeF size = legendSize();
+    if (size.isEmpty())
         return;
-    const QRectF box(kMargin, kMargin, width + 2 * kPadding, height + 1.4 * kPadding);
+    QFont bold = font();
+    bold.setBold(true);
+    const double letters = QFontMetricsF(font()).height();
+    const double line = kLine * letters;
+    const double swatch = kSwatch * letters;
+    const double width = size.width() - 2 * kPadding;
+    const QRectF box(QPointF(kMargin, kMargin), size);
     painter.setPen(Qt::NoPen);
     painter.setBrush(ground());
     painter.drawRoundedRect(box, 6, 6);
@@ -179,7 +196,7 @@ void SceneOverlay::paintLegend(QPainter& painter) const {
                 painter.setPen(Qt::NoPen);
                 painter.setBrush(entry.colour);
                 painter.drawRoundedRect(QRectF(left, row.center().y() - swatch / 2, swatch, swatch), 2.5, 2.5);
-                left += swatch + 7;
+                left += swatch + kSwatchGap;
             }
             painter.setPen(entry.colour.isValid() ? ink() : softInk());
             painter.drawText(QRectF(left, row.top(), width, line), Qt::AlignLeft | Qt::AlignVCenter, entry.text);
@@ -187,7 +204,7 @@ void SceneOverlay::paintLegend(QPainter& painter) const {
         }
     };
     drawEntries(legend.entries);
-    if (bar) {
+    if (hasBar(legend)) {
         const QRectF strip(row.left(), row.top() + 0.2 * line, width, 0.55 * line);
         QLinearGradient gradient(strip.topLeft(), strip.topRight());
         for (int i = 0; i <= 16; ++i)
@@ -226,7 +243,9 @@ void SceneOverlay::paintLabels(QPainter& painter) const {
         if (!at || !QRectF(rect()).contains(*at))
             continue;
         QRectF box(0, 0, metrics.horizontalAdvance(label.text) + 10, metrics.height() + 4);
-        box.moveCenter(*at - QPointF(0, label.strong ? metrics.height() : 0));
+        box.moveCenter(*at + QPointF(0, label.below_px));
+        // Words at the edge stay whole.
+        box.moveLeft(std::clamp(box.left(), 3.0, std::max(3.0, width() - 3 - box.width())));
         painter.setPen(Qt::NoPen);
         QColor behind = ground();
         behind.setAlpha(label.strong ? 235 : 150);

@@ -2,6 +2,7 @@
 
 #include <QColor>
 #include <QPointF>
+#include <QSizeF>
 #include <QString>
 #include <QWidget>
 #include <optional>
@@ -31,6 +32,7 @@ struct SceneLabel {
     Vector3d where = Vector3d::Zero();
     QString text;
     bool strong = false;  ///< on a ground of its own, before others
+    double below_px = 0;  ///< how far below the place its middle is
 };
 
 struct OverlayContent {
@@ -58,6 +60,9 @@ class SceneOverlay : public QWidget {
 
     /// The camera has moved: paints anew what follows it.
     void follow();
+
+    /// The size of the legend's box, in the upper left corner; none where it has nothing to say.
+    [[nodiscard]] QSizeF legendSize() const;
 
     /// Where a point of the scene appears, in this widget's coordinates; nothing behind the spectator.
     [[nodiscard]] std::optional<QPointF> project(const Vector3d& point) const;

@@ -102,7 +102,9 @@ void SceneWidget::answerYes(vtkObject* /*caller*/, unsigned long /*event*/, void
 }
 
 void SceneWidget::drawLater(vtkObject* /*caller*/, unsigned long /*event*/, void* /*data*/) {
-    requestDraw();
+    // VTK announces the end of the frame that we draw, too.
+    if (!painting_)
+        requestDraw();
 }
 
 void SceneWidget::requestDraw() {
@@ -110,6 +112,11 @@ void SceneWidget::requestDraw() {
         return;
     const qint64 since = sinceFrame_.isValid() ? sinceFrame_.elapsed() : kFrame_ms;
     drawTimer_.start(static_cast<int>(std::clamp<qint64>(kFrame_ms - since, 0, kFrame_ms)));
+}
+
+void SceneWidget::animate() {
+    restTimer_.start(kRest_ms);
+    requestDraw();
 }
 
 void SceneWidget::drawNow() {
@@ -145,6 +152,7 @@ void SceneWidget::resizeGL(int width, int height) {
 void SceneWidget::paintGL() {
     QElapsedTimer timer;
     timer.start();
+    painting_ = true;
     window_->SetMultiSamples(slow_ && restTimer_.isActive() ? 0 : kSamples);
     renderer_->ResetCameraClippingRange();
     vtkOpenGLState* state = window_->GetState();
@@ -169,6 +177,7 @@ void SceneWidget::paintGL() {
     gl->glClear(GL_COLOR_BUFFER_BIT);
     gl->glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl->glFinish();
+    painting_ = false;
     // The first frame loads drivers and compiles shaders, which says nothing about the next.
     if (++framesDrawn_ > 1 && timer.elapsed() > kSlow_ms)
         slow_ = true;

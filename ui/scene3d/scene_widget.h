@@ -34,6 +34,9 @@ class SceneWidget : public QOpenGLWidget {
     /// Something has changed: draws soon. Cheap, however often it is called.
     void requestDraw();
 
+    /// The same for one of many changes in a row, which matter more than smooth edges where drawing is slow.
+    void animate();
+
     /// Turns the camera about what it looks at, rad: to the right and upwards.
     void orbit(double right, double up);
     /// Goes nearer by a factor; below 1, further away.
@@ -77,11 +80,12 @@ class SceneWidget : public QOpenGLWidget {
     vtkSmartPointer<vtkRenderer> renderer_;
     QMetaObject::Connection contextGoes_;
     QTimer drawTimer_;
-    QTimer restTimer_;  ///< runs while the camera moves
+    QTimer restTimer_;  ///< runs while something moves
     QElapsedTimer sinceFrame_;
     QPointF pressedAt_;
     bool dragging_ = false;
     bool slow_ = false;
+    bool painting_ = false;
     int framesDrawn_ = 0;
 };
 

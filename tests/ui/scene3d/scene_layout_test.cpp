@@ -76,13 +76,15 @@ TEST(SceneLayout, LeavesOutWhatHasNoPoseOrNoTemplate) {
 }
 
 TEST(SceneLayout, OfNothingIsEmpty) {
-    const SceneLayout layout = layOut(BodyModel{});
+    const BodyModel nothing;
+    const SceneLayout layout = layOut(nothing);
     EXPECT_TRUE(layout.modules.empty());
     EXPECT_FALSE(pickModule(layout, Vector3d(0, 0, 1), -Vector3d::UnitZ()));
 }
 
 TEST(PickModule, FindsTheBoardThatARayHits) {
-    const SceneLayout layout = layOut(sampleBody());
+    const BodyModel body = sampleBody();
+    const SceneLayout layout = layOut(body);
     Random random(7);
     for (int trial = 0; trial < 500; ++trial) {
         const auto& module = layout.modules[static_cast<std::size_t>(trial) % layout.modules.size()];

@@ -79,7 +79,9 @@ vtkSmartPointer<vtkPolyData> ellipsoidsOf(const BodyModel& body, double scale, s
         const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(covariance);
         // A direction without uncertainty (the body's origin) still needs some thickness to have a surface.
         const Vector3d half = (3 * scale * axes.eigenvalues().cwiseMax(0).cwiseSqrt()).cwiseMax(1e-6);
-        const Matrix3d& V = axes.eigenvectors();
+        // Eigenvectors may form a mirror, which would turn the surface inside out.
+        Matrix3d V = axes.eigenvectors();
+        V.col(0) *= V.determinant();
         appendEllipsoid(module->T_body_module->translation(), V * half.asDiagonal(),
                         V * half.cwiseInverse().asDiagonal(), *points, *normals, *cells);
     }

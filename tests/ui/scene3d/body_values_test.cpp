@@ -1,6 +1,7 @@
 #include "ui/scene3d/body_values.h"
 
 #include <gtest/gtest.h>
+#include <vtkIdList.h>
 #include <vtkPolyData.h>
 
 #include "core/geometry/random.h"
@@ -55,6 +56,13 @@ TEST(Ellipsoids, HaveHalfAxesOfThreeStandardDeviationsAlongThePrincipalAxes) {
         const double scale = random.uniform(1, 50);
         const auto mesh = ellipsoidsOf(body, scale, 100);
         ASSERT_GT(mesh->GetNumberOfPoints(), 0);
+        // Faces look outwards, or they would not be drawn.
+        auto corners = vtkSmartPointer<vtkIdList>::New();
+        mesh->GetCellPoints(0, corners);
+        const Vector3d a(mesh->GetPoint(corners->GetId(0)));
+        const Vector3d b(mesh->GetPoint(corners->GetId(1)));
+        const Vector3d c(mesh->GetPoint(corners->GetId(2)));
+        EXPECT_GT((b - a).cross(c - a).dot(a - module.T_body_module->translation()), 0);
         double most = 0;
         for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i) {
             const Vector3d d = Vector3d(mesh->GetPoint(i)) - module.T_body_module->translation();

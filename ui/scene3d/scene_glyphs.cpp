@@ -23,7 +23,8 @@ namespace skincal {
 namespace {
 
 constexpr int kAround = 16;
-constexpr int kRings = 9;  // between the poles
+constexpr int kRings = 9;             // between the poles
+constexpr double kThinnest = 0.8e-3;  // of half an axis, m
 
 /// A sphere of unit radius mapped by `A`, with its normals.
 void appendEllipsoid(const Vector3d& centre, const Matrix3d& A, const Matrix3d& normalMap, vtkPoints& points,
@@ -77,8 +78,7 @@ vtkSmartPointer<vtkPolyData> ellipsoidsOf(const BodyModel& body, double scale, s
     for (const auto& [sigma, module] : chosen) {
         const Matrix3d covariance = module->covariance->bottomRightCorner<3, 3>();
         const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(covariance);
-        // A direction without uncertainty (the body's origin) still needs some thickness to have a surface.
-        const Vector3d half = (3 * scale * axes.eigenvalues().cwiseMax(0).cwiseSqrt()).cwiseMax(1e-6);
+        const Vector3d half = (3 * scale * axes.eigenvalues().cwiseMax(0).cwiseSqrt()).cwiseMax(kThinnest);
         // Eigenvectors may form a mirror, which would turn the surface inside out.
         Matrix3d V = axes.eigenvectors();
         V.col(0) *= V.determinant();

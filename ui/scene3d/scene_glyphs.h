@@ -10,6 +10,7 @@ namespace skincal {
 
 /// Ellipsoids of three standard deviations of position about the middle of each placed module that has a covariance,
 /// times `scale`, body frame, m: with `scale` 1 the true place lies inside in 97 % of cases.
+/// Needles and discs, which distances seen from one side only give, are drawn 1.6 mm thick at least, to be seen at all.
 /// @param limit  at most so many: those of the largest standard deviations.
 [[nodiscard]] vtkSmartPointer<vtkPolyData> ellipsoidsOf(const BodyModel& body, double scale, std::size_t limit);
 

@@ -53,7 +53,7 @@ TEST(Ellipsoids, HaveHalfAxesOfThreeStandardDeviationsAlongThePrincipalAxes) {
         const Vector3d sigma(random.uniform(0.1e-3, 1e-3), random.uniform(0.1e-3, 1e-3), random.uniform(0.1e-3, 1e-3));
         const Matrix3d position = V * sigma.cwiseAbs2().asDiagonal() * V.transpose();
         module.covariance->bottomRightCorner<3, 3>() = position;
-        const double scale = random.uniform(1, 50);
+        const double scale = random.uniform(10, 50);
         const auto mesh = ellipsoidsOf(body, scale, 100);
         ASSERT_GT(mesh->GetNumberOfPoints(), 0);
         // Faces look outwards, or they would not be drawn.
@@ -72,6 +72,16 @@ TEST(Ellipsoids, HaveHalfAxesOfThreeStandardDeviationsAlongThePrincipalAxes) {
         EXPECT_LE(most, 3 * scale * sigma.maxCoeff() * (1 + 1e-5));
         EXPECT_GE(most, 0.8 * 3 * scale * sigma.maxCoeff());
     }
+}
+
+TEST(Ellipsoids, CanBeSeenWhereTheyAreNeedles) {
+    BodyModel body = sheetOf(1);
+    body.modules[0].covariance->bottomRightCorner<3, 3>() = Vector3d(0, 0, 1e-6).asDiagonal();
+    const auto mesh = ellipsoidsOf(body, 2, 1);
+    double bounds[6];
+    mesh->GetBounds(bounds);
+    EXPECT_NEAR(bounds[1] - bounds[0], 1.6e-3, 1e-4);
+    EXPECT_NEAR(bounds[5] - bounds[4], 2 * 3 * 2 * 1e-3, 1e-4);
 }
 
 TEST(Ellipsoids, AreOfTheWorstModulesWhereThereAreTooMany) {

@@ -14,7 +14,6 @@
 #include <vtkSphereSource.h>
 #include <vtkUnsignedCharArray.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -75,47 +74,15 @@ double radiusOf(const BodyModel& body, const Vector3d& centre) {
     return radius;
 }
 
-/// Where to look from (unit vector towards the spectator) and what is up.
-struct BodyView3d {
-    Vector3d from;
-    Vector3d up;
-};
+}  // namespace
 
-/// From where most boards face, a little aside so that depth shows; turned so that the body lies along the picture's
-/// longer side, as upright as the first camera was.
-BodyView3d bestView(const BodyModel& body, bool landscape) {
-    Vector3d from = Vector3d::Zero();
-    Matrix3d spread = Matrix3d::Zero();
-    const Vector3d centre = centreOf(body);
-    for (const BodyModule& module : body.modules) {
-        if (!module.T_body_module)
-            continue;
-        from += module.T_body_module->linear().col(2);
-        const Vector3d d = module.T_body_module->translation() - centre;
-        spread += d * d.transpose();
-    }
-    from = from.norm() > 1e-6 ? Vector3d(from.normalized()) : Vector3d::UnitZ();
+std::optional<Vector3d> firstCameraUp(const BodyModel& body) {
     const auto view = std::find_if(body.views.begin(), body.views.end(),
                                    [](const BodyView& v) { return v.T_body_camera.has_value(); });
-    Vector3d up = view == body.views.end() ? Vector3d(0, 1, 0) : Vector3d(-view->T_body_camera->linear().col(1));
-    if (std::abs(up.dot(from)) > 0.95)
-        up = from.unitOrthogonal();
-    const Vector3d side = up.cross(from).normalized();
-    from = (from + 0.25 * side + 0.2 * up).normalized();
-
-    const Matrix3d across = Matrix3d::Identity() - from * from.transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(across * spread * across);
-    const Vector3d extent = axes.eigenvalues();
-    constexpr double kLonger = 1.3;  // squared ratio of the sides from which a body has a direction
-    if (extent[2] > kLonger * extent[1]) {
-        const Vector3d along = axes.eigenvectors().col(2);
-        const Vector3d turned = landscape ? from.cross(along) : along;
-        up = turned.dot(up) < 0 ? Vector3d(-turned) : turned;
-    }
-    return {from, up};
+    if (view == body.views.end())
+        return std::nullopt;
+    return Vector3d(-view->T_body_camera->linear().col(1));
 }
-
-}  // namespace
 
 std::array<double, 3> patchColour(PatchId patch) {
     return kPalette.at(patch.value % kPalette.size());
@@ -216,55 +183,19 @@ void addBody(vtkRenderer& renderer, const BodyModel& body) {
 }
 
 double lookAtBody(vtkRenderer& renderer, const BodyModel& body, const Margins& margins, double aspect) {
-    const BodyView3d view = bestView(body, aspect >= 1);
-    const Vector3d x = view.up.cross(view.from).normalized();
-    const Vector3d y = view.from.cross(x);
-
-    // All boards, in axes right, up and towards the spectator.
+    std::vector<Isometry3d> poses;
+    for (const BodyModule& module : body.modules) {
+        if (module.T_body_module)
+            poses.push_back(*module.T_body_module);
+    }
     std::vector<Vector3d> points;
     const auto boards = boardsOf(body);
-    for (vtkIdType i = 0; i < boards->GetNumberOfPoints(); ++i) {
-        const Vector3d p(boards->GetPoint(i));
-        points.emplace_back(p.dot(x), p.dot(y), p.dot(view.from));
-    }
-    if (points.empty())
-        points.emplace_back(0, 0, 0);
-
-    // A point is in the picture where x - c <= (d - z) right and c - x <= (d - z) left, with the spectator at c, d:
-    // d right + c >= max(x + z right) and d left - c >= max(z left - x); the same for top and bottom.
-    constexpr double kAngle_deg = 30;
-    const double half = std::tan(0.5 * kAngle_deg * kDegree);
-    struct Side {
-        double more, less;  // tangents of the angles that are free on either side of the axis
-        double a = -1e300, b = -1e300;
-    };
-    std::array<Side, 2> sides{Side{half * aspect * (1 - 2 * margins.right), half * aspect * (1 - 2 * margins.left)},
-                              Side{half * (1 - 2 * margins.top), half * (1 - 2 * margins.bottom)}};
-    for (const Vector3d& p : points) {
-        for (int i = 0; i < 2; ++i) {
-            Side& s = sides.at(static_cast<std::size_t>(i));
-            s.a = std::max(s.a, p[i] + p.z() * s.more);
-            s.b = std::max(s.b, p.z() * s.less - p[i]);
-        }
-    }
-    double distance = -1e300;
-    for (const Side& s : sides)
-        distance = std::max(distance, (s.a + s.b) / (s.more + s.less));
-    Vector3d place(0, 0, distance);
-    for (int i = 0; i < 2; ++i) {
-        const Side& s = sides.at(static_cast<std::size_t>(i));
-        place[i] = 0.5 * ((s.a - distance * s.more) + (distance * s.less - s.b));
-    }
-    const Vector3d eye = place.x() * x + place.y() * y + place.z() * view.from;
-    const double depth = std::max(0.02, distance - centreOf(body).dot(view.from));
-    const Vector3d focus = eye - depth * view.from;
-    vtkCamera* camera = renderer.GetActiveCamera();
-    camera->SetViewAngle(kAngle_deg);
-    camera->SetFocalPoint(focus.x(), focus.y(), focus.z());
-    camera->SetPosition(eye.x(), eye.y(), eye.z());
-    camera->SetViewUp(view.up.x(), view.up.y(), view.up.z());
+    for (vtkIdType i = 0; i < boards->GetNumberOfPoints(); ++i)
+        points.emplace_back(boards->GetPoint(i));
+    const Spectator spectator = bestSpectator(poses, firstCameraUp(body), aspect >= 1);
+    const double height = fitCamera(*renderer.GetActiveCamera(), spectator, points, centreOf(body), margins, aspect);
     renderer.ResetCameraClippingRange();
-    return 2 * depth * half;
+    return height;
 }
 
 }  // namespace skincal

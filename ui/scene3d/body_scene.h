@@ -3,8 +3,10 @@
 #include <vtkSmartPointer.h>
 
 #include <array>
+#include <optional>
 
 #include "core/estimation/body_model.h"
+#include "ui/scene3d/view_fit.h"
 
 class vtkPolyData;
 class vtkRenderer;
@@ -26,13 +28,8 @@ namespace skincal {
 /// Puts a body into a renderer: boards, edges, LEDs, cameras.
 void addBody(vtkRenderer& renderer, const BodyModel& body);
 
-/// What to keep free along the borders, as shares of the picture's width and height, each below a half.
-struct Margins {
-    double left = 0.03;
-    double right = 0.03;
-    double top = 0.04;
-    double bottom = 0.04;
-};
+/// What points up for the first camera that has a pose, body frame.
+[[nodiscard]] std::optional<Vector3d> firstCameraUp(const BodyModel& body);
 
 /// Turns the camera to where the boards face and as near as all of them stay inside the margins.
 /// @param aspect  width over height of the picture.

@@ -1,0 +1,31 @@
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QSurfaceFormat>
+#include <cstdlib>
+#include <iostream>
+
+#include "app/headless_display.h"
+#include "ui/scene3d/scene_widget.h"
+
+int main(int argc, char** argv) {
+    ::testing::InitGoogleTest(&argc, argv);
+    if (GTEST_FLAG_GET(list_tests))
+        return RUN_ALL_TESTS();
+    // Always on a display of its own: windows do not flicker over somebody's screen, and all draw alike.
+    ::unsetenv("DISPLAY");
+    const skincal::HeadlessDisplay display;
+    if (!display.complaint().empty()) {
+        std::cerr << display.complaint() << '\n';
+        return 1;
+    }
+    ::setenv("QT_QPA_PLATFORM", "xcb", 1);
+    ::setenv("QT_SCALE_FACTOR", "1", 1);
+    QSurfaceFormat::setDefaultFormat(skincal::SceneWidget::sceneFormat());
+    QApplication::setStyle("fusion");
+    const QApplication application(argc, argv);
+    QFont font("DejaVu Sans");
+    font.setPixelSize(12);
+    QApplication::setFont(font);
+    return RUN_ALL_TESTS();
+}

@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+
+#include "tests/ui/scene3d/baseline.h"
+#include "tests/ui/scene3d/sample_body.h"
+#include "tests/ui/scene3d/view_fixture.h"
+
+namespace skincal {
+namespace {
+
+TEST(Pictures, OfTheBodyInEachTheme) {
+    const auto view = shownView();
+    view->setBody(shared(sampleBody()));
+    EXPECT_TRUE(matchesBaseline(view->grabPicture(), "body-patches-dark"));
+    view->setDark(false);
+    EXPECT_TRUE(matchesBaseline(view->grabPicture(), "body-patches-light"));
+}
+
+TEST(Pictures, OfUncertaintyWithEllipsoids) {
+    const auto view = shownView();
+    view->setBody(shared(sampleBody()));
+    view->setColourMode(ColourMode::Uncertainty);
+    view->setEllipsoidsShown(true);
+    EXPECT_TRUE(matchesBaseline(view->grabPicture(), "body-uncertainty-dark"));
+}
+
+TEST(Pictures, OfPatchesThatTakeShape) {
+    const auto view = shownView();
+    view->setDark(false);
+    view->setBody(shared(sampleBodyWithoutPictures()));
+    EXPECT_TRUE(matchesBaseline(view->grabPicture(), "patches-light"));
+}
+
+TEST(Pictures, OfGuidesAndSelection) {
+    const auto view = shownView();
+    view->setBody(shared(sampleBody()));
+    view->setSelected({ModuleId(3), ModuleId(12)});
+    view->setGuideUp(Vector3d(0, 1, 0.2));
+    Isometry3d T_r_v = *sampleBody().views[0].T_body_camera;
+    T_r_v.translation().x() += 0.2;
+    view->setGuideCamera(T_r_v);
+    view->fitEverything();
+    EXPECT_TRUE(matchesBaseline(view->grabPicture(), "guides-dark"));
+}
+
+TEST(Pictures, OfNothing) {
+    const auto view = shownView();
+    EXPECT_TRUE(matchesBaseline(view->grabPicture(), "empty-dark"));
+}
+
+TEST(Pictures, DifferWhereTheSceneDoes) {
+    const auto view = shownView();
+    view->setBody(shared(sampleBody()));
+    const QImage patches = view->grabPicture();
+    EXPECT_LT(unlikeness(patches, view->grabPicture()), 1e-3);
+    view->setColourMode(ColourMode::Residual);
+    EXPECT_GT(unlikeness(patches, view->grabPicture()), 0.02);
+    EXPECT_GT(unlikeness(patches, QImage(100, 100, QImage::Format_RGB32)), 0.99);
+}
+
+}  // namespace
+}  // namespace skincal

@@ -1,0 +1,296 @@
+#include "ui/scene3d/body_view_widget.h"
+
+#include <vtkCamera.h>
+#include <vtkPolyData.h>
+#include <vtkRenderer.h>
+
+#include <QFocusEvent>
+#include <QKeyEvent>
+#include <QPainter>
+#include <QResizeEvent>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "ui/scene3d/body_actors.h"
+#include "ui/scene3d/scene_widget.h"
+
+namespace skincal {
+
+BodyViewWidget::BodyViewWidget(QWidget* parent)
+    : QWidget(parent),
+      scene_(new SceneWidget(this)),
+      overlay_(new SceneOverlay(*scene_->renderer().GetActiveCamera(), this)),
+      actors_(std::make_unique<BodyActors>(scene_->renderer())) {
+    setFocusPolicy(Qt::StrongFocus);
+    scene_->setFocusPolicy(Qt::NoFocus);
+    connect(scene_, &SceneWidget::aboutToDraw, overlay_, &SceneOverlay::follow);
+    connect(scene_, &SceneWidget::cameraMovedByUser, this, [this] { movedByUser_ = true; });
+    connect(scene_, &SceneWidget::clicked, this, &BodyViewWidget::click);
+    connect(scene_, &SceneWidget::doubleClicked, this, &BodyViewWidget::fitView);
+    actors_->setDark(dark_);
+    updateWords();
+}
+
+BodyViewWidget::~BodyViewWidget() {
+    // Before what the actors and the overlay stand on, whatever order Qt takes children in.
+    delete overlay_;
+    actors_.reset();
+    delete scene_;
+}
+
+void BodyViewWidget::setBody(std::shared_ptr<const BodyModel> body) {
+    if (body == body_)
+        return;
+    const bool wasEmpty = layout_.modules.empty();
+    const bool wasPlaced = layout_.anyPlaced;
+    body_ = std::move(body);
+    layout_ = body_ ? layOut(*body_) : SceneLayout{};
+    if (body_)
+        actors_->show(*body_, layout_);
+    else
+        actors_->clear();
+    values_ = body_ ? valuesOf(*body_, mode_) : std::nullopt;
+    const auto gone = [&](ModuleId id) { return layout_.find(id) == nullptr; };
+    if (std::any_of(measured_.begin(), measured_.end(), gone))
+        measured_.clear();
+    actors_->setSelected(layout_, selected_);
+    actors_->setCamerasShown(cameras_ && !layout_.modules.empty());
+    updateGuides();
+    updateEllipsoids();
+    recolour();
+    // What was looked at is no longer where it was.
+    const bool anew = wasEmpty || wasPlaced != layout_.anyPlaced;
+    updateWords();
+    if (anew || !movedByUser_)
+        resetView();
+}
+
+void BodyViewWidget::recolour() {
+    actors_->setColours(coloursOf(layout_, mode_, values_, live_, dark_));
+    scene_->requestDraw();
+}
+
+void BodyViewWidget::setColourMode(ColourMode mode) {
+    if (mode == mode_)
+        return;
+    mode_ = mode;
+    values_ = body_ ? valuesOf(*body_, mode_) : std::nullopt;
+    recolour();
+    updateWords();
+}
+
+void BodyViewWidget::setEllipsoidsShown(bool shown) {
+    if (shown == ellipsoids_)
+        return;
+    ellipsoids_ = shown;
+    updateEllipsoids();
+    updateWords();
+}
+
+void BodyViewWidget::updateEllipsoids() {
+    const bool known = body_ && std::any_of(body_->modules.begin(), body_->modules.end(), [](const BodyModule& module) {
+                           return module.covariance && module.T_body_module;
+                       });
+    ellipsoidScale_ = ellipsoids_ && known ? ellipsoidScale(*body_) : 0;
+    if (body_)
+        actors_->setEllipsoids(*body_, ellipsoidScale_);
+    scene_->requestDraw();
+}
+
+void BodyViewWidget::setCamerasShown(bool shown) {
+    cameras_ = shown;
+    actors_->setCamerasShown(shown && !layout_.modules.empty());
+    scene_->requestDraw();
+    updateWords();
+}
+
+void BodyViewWidget::setGuideCamera(const std::optional<Isometry3d>& T_r_v) {
+    guideCamera_ = T_r_v;
+    updateGuides();
+    updateWords();
+}
+
+void BodyViewWidget::setGuideUp(const std::optional<Vector3d>& up_r) {
+    if (up_r && !(up_r->norm() > 1e-9))
+        throw std::logic_error("BodyViewWidget: no direction is up");
+    guideUp_ = up_r;
+    updateGuides();
+    updateWords();
+    if (!movedByUser_)
+        resetView();
+}
+
+void BodyViewWidget::updateGuides() {
+    // Both are in the body frame, which has no place in the scene before the first patch has.
+    const bool shown = layout_.anyPlaced;
+    actors_->setGuideCamera(shown ? guideCamera_ : std::nullopt, 2 * BodyActors::cameraSize(layout_));
+    actors_->setGuideUp(shown ? guideUp_ : std::nullopt, layout_);
+    scene_->requestDraw();
+}
+
+void BodyViewWidget::setSelected(std::vector<ModuleId> modules) {
+    if (modules == selected_)
+        return;
+    selected_ = std::move(modules);
+    actors_->setSelected(layout_, selected_);
+    scene_->requestDraw();
+    updateWords();
+}
+
+void BodyViewWidget::setMesh(vtkPolyData* mesh) {
+    actors_->setMesh(mesh);
+    scene_->requestDraw();
+}
+
+void BodyViewWidget::setDark(bool dark) {
+    if (dark == dark_)
+        return;
+    dark_ = dark;
+    actors_->setDark(dark);
+    recolour();
+    updateWords();
+}
+
+void BodyViewWidget::setCellValues(std::span<const float> values) {
+    live_.assign(values.begin(), values.end());
+    if (mode_ == ColourMode::Values) {
+        recolour();
+        scene_->animate();
+    }
+}
+
+void BodyViewWidget::setCellHeights(std::span<const float> heights) {
+    std::vector<float> shown;
+    shown.reserve(layout_.modules.size());
+    for (const ShownModule& module : layout_.modules)
+        shown.push_back(module.index < heights.size() ? heights[module.index] : 0.0F);
+    actors_->setHeights(shown);
+    scene_->animate();
+}
+
+void BodyViewWidget::setMeasuring(bool measuring) {
+    if (measuring == measuring_)
+        return;
+    measuring_ = measuring;
+    measured_.clear();
+    scene_->setCursor(measuring ? Qt::CrossCursor : Qt::ArrowCursor);
+    updateWords();
+}
+
+void BodyViewWidget::click(const QPointF& position) {
+    setFocus(Qt::MouseFocusReason);
+    const auto module = moduleAt(position);
+    if (measuring_) {
+        if (module)
+            measureTo(*module);
+    } else if (module) {
+        emit moduleClicked(*module);
+    } else {
+        emit nothingClicked();
+    }
+}
+
+void BodyViewWidget::measureTo(ModuleId module) {
+    // A third click begins anew, a second one on the same module changes nothing.
+    if (measured_.size() == 2)
+        measured_.clear();
+    if (measured_.empty() || measured_.front() != module)
+        measured_.push_back(module);
+    updateWords();
+    const std::vector<Vector3d> ends = measurePoints();
+    if (ends.size() == 2)
+        emit measured(measured_[0], measured_[1], (ends[1] - ends[0]).norm());
+}
+
+std::optional<ModuleId> BodyViewWidget::moduleAt(const QPointF& position) const {
+    if (layout_.modules.empty())
+        return std::nullopt;
+    vtkCamera* camera = scene_->renderer().GetActiveCamera();
+    const double aspect = static_cast<double>(scene_->width()) / std::max(1, scene_->height());
+    const double half = std::tan(0.5 * camera->GetViewAngle() * kDegree);
+    const double* shift = camera->GetWindowCenter();
+    const double x = (2 * position.x() / std::max(1, scene_->width()) - 1 + shift[0]) * half * aspect;
+    const double y = (1 - 2 * position.y() / std::max(1, scene_->height()) + shift[1]) * half;
+    const Vector3d eye(camera->GetPosition());
+    const Vector3d ahead(camera->GetDirectionOfProjection());
+    const Vector3d up = Vector3d(camera->GetViewUp());
+    const Vector3d right = ahead.cross(up).normalized();
+    return pickModule(layout_, eye, ahead + x * right + y * right.cross(ahead));
+}
+
+std::optional<QPointF> BodyViewWidget::positionOf(const Vector3d& point) const {
+    return overlay_->project(point);
+}
+
+QImage BodyViewWidget::grabPicture() {
+    overlay_->follow();
+    const QImage scene = scene_->grabFramebuffer();
+    if (scene.isNull())
+        return {};
+    QImage picture = scene.convertToFormat(QImage::Format_RGB32);
+    picture.setDevicePixelRatio(devicePixelRatioF());
+    QPainter painter(&picture);
+    overlay_->render(&painter, QPoint(), QRegion(), QWidget::DrawChildren);
+    return picture;
+}
+
+void BodyViewWidget::keyPressEvent(QKeyEvent* event) {
+    constexpr double kStep = 10 * kDegree;
+    constexpr double kZoom = 1.2;
+    switch (event->key()) {
+        case Qt::Key_Left:
+            return scene_->orbit(-kStep, 0);
+        case Qt::Key_Right:
+            return scene_->orbit(kStep, 0);
+        case Qt::Key_Up:
+            return scene_->orbit(0, kStep);
+        case Qt::Key_Down:
+            return scene_->orbit(0, -kStep);
+        case Qt::Key_Plus:
+        case Qt::Key_Equal:
+            return scene_->zoom(kZoom);
+        case Qt::Key_Minus:
+            return scene_->zoom(1 / kZoom);
+        case Qt::Key_F:
+            return event->modifiers().testFlag(Qt::ShiftModifier) ? fitEverything() : fitView();
+        case Qt::Key_Home:
+            return resetView();
+        case Qt::Key_Escape:
+            if (!measured_.empty()) {
+                measured_.clear();
+                return updateWords();
+            }
+            break;
+        default:
+            break;
+    }
+    QWidget::keyPressEvent(event);
+}
+
+void BodyViewWidget::resizeEvent(QResizeEvent* /*event*/) {
+    scene_->setGeometry(rect());
+    overlay_->setGeometry(rect());
+    overlay_->raise();
+    if (!movedByUser_)
+        resetView();
+}
+
+void BodyViewWidget::focusInEvent(QFocusEvent* event) {
+    // Those who come with the mouse know where they are.
+    focusFrame_ = event->reason() != Qt::MouseFocusReason && event->reason() != Qt::ActiveWindowFocusReason;
+    updateWords();
+}
+
+void BodyViewWidget::focusOutEvent(QFocusEvent* /*event*/) {
+    focusFrame_ = false;
+    updateWords();
+}
+
+void BodyViewWidget::changeEvent(QEvent* event) {
+    if (event->type() == QEvent::LanguageChange || event->type() == QEvent::FontChange)
+        updateWords();
+    QWidget::changeEvent(event);
+}
+
+}  // namespace skincal

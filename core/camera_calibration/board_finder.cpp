@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/camera_calibration/charuco.h"
+#include "core/geometry/statistics.h"
 
 namespace skincal {
 namespace {
@@ -53,12 +54,8 @@ std::vector<BoardCorner> chessboardCorners(const cv::Mat& grey, const BoardPlan&
     return corners;
 }
 
-double median(std::vector<double> values) {
-    if (values.empty())
-        return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+double medianOrZero(std::vector<double> values) {
+    return values.empty() ? 0 : median(std::move(values));
 }
 
 double bilinear(const cv::Mat& grey, const Vector2d& p) {
@@ -168,7 +165,7 @@ double measureBlur(const cv::Mat& grey, const BoardPlan& plan, const BoardView& 
     forNeighbours(plan, view, [&](std::size_t direction, const Vector2d& a, const Vector2d& b) {
         sides.at(direction).push_back((b - a).norm());
     });
-    const std::array typical{median(sides[0]), median(sides[1])};
+    const std::array typical{medianOrZero(sides[0]), medianOrZero(sides[1])};
     std::array<std::vector<double>, 2> widths;
     forNeighbours(plan, view, [&](std::size_t direction, const Vector2d& a, const Vector2d& b) {
         const double other = typical.at(1 - direction) > 0 ? typical.at(1 - direction) : (b - a).norm();
@@ -176,7 +173,7 @@ double measureBlur(const cv::Mat& grey, const BoardPlan& plan, const BoardView& 
         if (width >= 0)
             widths.at(direction).push_back(width);
     });
-    return std::max(median(widths[0]), median(widths[1])) / kSigmasOfWidth;
+    return std::max(medianOrZero(widths[0]), medianOrZero(widths[1])) / kSigmasOfWidth;
 }
 
 tl::expected<BoardView, BoardFault> findBoard(const cv::Mat& picture, const BoardPlan& plan,
@@ -203,7 +200,7 @@ tl::expected<BoardView, BoardFault> findBoard(const cv::Mat& picture, const Boar
     std::vector<double> sides;
     forNeighbours(plan, view,
                   [&](std::size_t, const Vector2d& a, const Vector2d& b) { sides.push_back((b - a).norm()); });
-    view.square_px = median(sides);
+    view.square_px = medianOrZero(sides);
     if (view.square_px < options.minSquare_px)
         return tl::unexpected(BoardFault{BoardMiss::TooSmall, view.square_px, options.minSquare_px});
     refine(grey, plan, *std::min_element(sides.begin(), sides.end()), view);

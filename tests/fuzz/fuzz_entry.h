@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/formats/body_json.h"
+#include "core/formats/camera_file.h"
 #include "core/formats/picture_decode.h"
 #include "core/formats/recording_parse.h"
 #include "core/formats/truth_json.h"
@@ -37,6 +38,12 @@ inline void checkRoundTrip(const BodyModel& body) {
         throw std::logic_error("a body that does not survive being written");
 }
 
+inline void checkRoundTrip(const CameraModel& camera) {
+    const auto again = parseCameraModel(cameraModelToYaml(camera), "again.yaml");
+    if (!again || again->fx != camera.fx || again->cy != camera.cy || again->distortion != camera.distortion)
+        throw std::logic_error("a camera that does not survive being written");
+}
+
 /// A small picture is decoded, too.
 inline void checkPicture(std::string_view bytes) {
     const auto header = parseImageHeader(bytes);
@@ -56,7 +63,7 @@ inline void readAnything(std::string_view bytes) {
         return;
     const std::string_view text = bytes.substr(1);
     Recording recording = smallRecording();
-    switch (static_cast<unsigned char>(bytes.front()) % 6) {
+    switch (static_cast<unsigned char>(bytes.front()) % 7) {
         case 0:
             if (const auto result = parseRecordingJson(text, "recording.json"); !result)
                 check(result.error());
@@ -74,6 +81,14 @@ inline void readAnything(std::string_view bytes) {
             break;
         case 4: {
             const auto result = parseBodyJson(text, "a.body.json");
+            if (result)
+                checkRoundTrip(*result);
+            else
+                check(result.error());
+            break;
+        }
+        case 5: {
+            const auto result = parseCameraModel(text, "camera.yaml");
             if (result)
                 checkRoundTrip(*result);
             else

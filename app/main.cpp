@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "app/command_line.h"
+#include "app/window.h"
 #include "core/formats/file_error.h"
 
 namespace skincal {
@@ -42,7 +43,12 @@ int runProgram(int argc, char** argv) {
     CommandLine line;
     line.app.name("skincal");
     line.app.set_version_flag("--version", "skincal " SKINCAL_VERSION);
-    line.app.require_subcommand(1);
+    line.app.require_subcommand(0, 1);
+    WindowOptions window;
+    line.app.add_flag("--demo", window.demo, "Open the window on a simulated arm with skin and a webcam");
+    line.app.add_flag("--light", window.light, "Light colours");
+    line.app.add_option("--open", window.recording, "Open the window with this recording (a *.skinrec directory)");
+    line.run = [&] { return runWindow(argc, argv, window); };
     const std::string exitCodes =
         "Exit codes: 0 done; 1 the data do not suffice (what is missing is printed), or the result is not to be "
         "trusted;\n"

@@ -1,8 +1,12 @@
 #include "core/session/session.h"
 
+#include <QPointer>
 #include <QTimer>
 #include <QUndoCommand>
+#include <QtConcurrent/QtConcurrentRun>
 #include <algorithm>
+
+#include "core/session/session_storage.h"
 
 namespace skincal {
 
@@ -21,6 +25,7 @@ class DecideCommand : public QUndoCommand {
 };
 
 Session::Session(QObject* parent) : QObject(parent), undoStack_(this), solver_(this) {
+    files_.setMaxThreadCount(1);  // one after the other
     connect(&solver_, &Solver::solved, this, [this](std::shared_ptr<const Solution> solution) {
         failure_.clear();
         solution_ = std::move(solution);
@@ -36,6 +41,12 @@ Session::Session(QObject* parent) : QObject(parent), undoStack_(this), solver_(t
     });
     connect(&solver_, &Solver::busyChanged, this, &Session::solvingChanged);
     connect(&solver_, &Solver::progressed, this, &Session::solvingProgressed);
+}
+
+Session::~Session() {
+    if (readingCancelled_)
+        *readingCancelled_ = true;
+    files_.waitForDone();
 }
 
 const ScannedView* Session::findView(const std::string& name) const {
@@ -130,6 +141,50 @@ void Session::load(OpenedRecording recording) {
     emit solutionChanged();
     changed(false);
     setSaved(revision_);
+}
+
+void Session::open(const QString& directory) {
+    if (readingCancelled_)
+        *readingCancelled_ = true;
+    readingCancelled_ = std::make_shared<std::atomic<bool>>(false);
+    [[maybe_unused]] const auto future =
+        QtConcurrent::run(&files_, [self = QPointer<Session>(this), directory, cancelled = readingCancelled_] {
+            RunContext context;
+            context.isCancelled = [cancelled] { return cancelled->load(); };
+            auto recording = std::make_shared<tl::expected<OpenedRecording, std::string>>(
+                readSession(directory.toStdString(), context));
+            const auto deliver = [self, directory, recording, cancelled] {
+                if (!self || cancelled->load())
+                    return;
+                if (!*recording) {
+                    emit self->fileFailed(QString::fromStdString(recording->error()));
+                    return;
+                }
+                self->load(**std::move(recording));
+                emit self->opened(directory);
+            };
+            QMetaObject::invokeMethod(self, deliver, Qt::QueuedConnection);
+        });
+}
+
+void Session::save(const QString& directory) {
+    [[maybe_unused]] const auto future =
+        QtConcurrent::run(&files_, [self = QPointer<Session>(this), directory, measured = measured_,
+                                    decisions = decisions_, revision = revision_] {
+            const auto written = writeSession(measured, decisions, directory.toStdString());
+            const QString why = written ? QString() : QString::fromStdString(written.error());
+            const auto deliver = [self, directory, why, revision] {
+                if (!self)
+                    return;
+                if (!why.isEmpty()) {
+                    emit self->fileFailed(why);
+                    return;
+                }
+                self->setSaved(revision);
+                emit self->saved(directory);
+            };
+            QMetaObject::invokeMethod(self, deliver, Qt::QueuedConnection);
+        });
 }
 
 void Session::setSaved(std::uint64_t revision) {

@@ -16,6 +16,8 @@ class Session : public QObject {
     Q_OBJECT
   public:
     explicit Session(QObject* parent = nullptr);
+    /// Cancels what is being read, waits for what is being written.
+    ~Session() override;
 
     [[nodiscard]] const Measured& measured() const { return measured_; }
     [[nodiscard]] const Decisions& decisions() const { return decisions_; }
@@ -49,9 +51,13 @@ class Session : public QObject {
     /// An empty document, or one that was read.
     void load(OpenedRecording recording);
 
+    /// Reads a recording on another thread; opened() or fileFailed() follows.
+    void open(const QString& directory);
+    /// Writes likewise; saved() or fileFailed() follows. What changes meanwhile is not in it.
+    void save(const QString& directory);
+
     /// Whether there is anything that save() would write anew.
     [[nodiscard]] bool isModified() const { return revision_ != savedRevision_; }
-    void setSaved(std::uint64_t revision);
 
   signals:
     void skinChanged();
@@ -63,11 +69,15 @@ class Session : public QObject {
     void solvingChanged(bool solving);
     void solvingProgressed(const QString& stage, double done);
     void modifiedChanged(bool modified);
+    void opened(const QString& directory);
+    void saved(const QString& directory);
+    void fileFailed(const QString& why);
 
   private:
     friend class DecideCommand;
 
     void swapDecisions(Decisions& other);
+    void setSaved(std::uint64_t revision);
     void changed(bool onlyGrew);
     void solveSoon();
 
@@ -75,6 +85,8 @@ class Session : public QObject {
     Decisions decisions_;
     QUndoStack undoStack_;
     Solver solver_;
+    QThreadPool files_;
+    std::shared_ptr<std::atomic<bool>> readingCancelled_;
     std::shared_ptr<const Solution> solution_;
     std::shared_ptr<const Guidance> guidance_;
     QString failure_;

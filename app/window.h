@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace skincal {
+
+struct WindowOptions {
+    bool demo = false;                               ///< opens on the simulated rig
+    std::string scenario = "demo";                   ///< what the rig is
+    std::optional<std::filesystem::path> recording;  ///< to open at once
+    bool light = false;                              ///< light colours, whatever the desktop has
+};
+
+/// Opens the window and runs until it is closed. Needs a display.
+int runWindow(int argc, char** argv, const WindowOptions& options);
+
+}  // namespace skincal

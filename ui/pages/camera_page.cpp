@@ -1,0 +1,195 @@
+#include "ui/pages/camera_page.h"
+
+#include <QComboBox>
+#include <QFileDialog>
+#include <QPushButton>
+#include <QSlider>
+#include <cmath>
+
+#include "core/formats/camera_file.h"
+#include "ui/widgets/histogram_view.h"
+#include "ui/widgets/image_conversion.h"
+#include "ui/widgets/picture_view.h"
+
+namespace skincal {
+namespace {
+
+constexpr int kSliderSteps = 100;
+
+}  // namespace
+
+CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* parent)
+    : Page(tr("Camera"),
+           tr("Choose the camera, see that the picture is sharp and not too bright, and say what its lens does."),
+           parent),
+      workbench_(workbench),
+      scan_(scan),
+      devices_(new QComboBox),
+      formats_(new QComboBox),
+      exposure_(new QSlider(Qt::Horizontal)),
+      exposureText_(mutedLabel()),
+      picture_(new PictureView),
+      histogram_(new HistogramView),
+      figures_(mutedLabel()),
+      intrinsics_(new QLabel),
+      load_(new QPushButton(tr("Load intrinsics …"))),
+      makers_(new QPushButton(tr("Use the maker's intrinsics"))) {
+    auto* top = new QHBoxLayout;
+    devices_->setAccessibleName(tr("Camera"));
+    devices_->setToolTip(tr("The camera that looks at the body"));
+    for (const auto& offer : workbench.cameraOffers)
+        devices_->addItem(offer.name);
+    formats_->setAccessibleName(tr("Resolution"));
+    formats_->setToolTip(tr("Size and rate of the pictures; intrinsics hold for one size"));
+    exposure_->setRange(0, kSliderSteps);
+    exposure_->setAccessibleName(tr("Exposure"));
+    exposure_->setToolTip(tr("Shorten it until LEDs are bright and not clipped"));
+    top->addWidget(devices_);
+    top->addWidget(formats_);
+    top->addWidget(mutedLabel(tr("Exposure")));
+    top->addWidget(exposure_, 1);
+    exposureText_->setMinimumWidth(64);
+    top->addWidget(exposureText_);
+    body().addLayout(top);
+    picture_->setPlaceholder(tr("The camera's picture appears here."));
+    body().addWidget(picture_, 1);
+    auto* below = new QHBoxLayout;
+    auto* left = new QVBoxLayout;
+    left->addWidget(histogram_, 1);
+    left->addWidget(figures_);
+    below->addLayout(left, 1);
+    auto* right = new QVBoxLayout;
+    intrinsics_->setWordWrap(true);
+    right->addWidget(intrinsics_);
+    right->addWidget(mutedLabel(tr("Reads ROS camera_info YAML, OpenCV YAML or XML, and Kalibr camchain YAML.")));
+    auto* buttons = new QHBoxLayout;
+    load_->setObjectName(QStringLiteral("loadIntrinsics"));
+    load_->setToolTip(tr("A file with focal lengths, centre and distortion of this camera at this size"));
+    makers_->setObjectName(QStringLiteral("makersIntrinsics"));
+    makers_->setProperty("primary", true);
+    makers_->setToolTip(tr("The simulated camera knows its own lens"));
+    makers_->setVisible(workbench.hands && workbench.hands->intrinsics);
+    buttons->addWidget(makers_);
+    buttons->addWidget(load_);
+    buttons->addStretch();
+    right->addLayout(buttons);
+    right->addStretch();
+    below->addLayout(right, 1);
+    body().addLayout(below);
+
+    connect(devices_, &QComboBox::activated, this, [this](int offer) {
+        if (offer != workbench_.chosenCamera())
+            workbench_.chooseCamera(static_cast<std::size_t>(offer));
+    });
+    connect(formats_, &QComboBox::activated, this, [this](int index) {
+        if (FrameSource* camera = workbench_.camera())
+            camera->setFormat(camera->formats().at(static_cast<std::size_t>(index)));
+        refresh();
+    });
+    connect(exposure_, &QSlider::valueChanged, this, [this](int step) {
+        FrameSource* camera = workbench_.camera();
+        if (camera == nullptr || !camera->exposureRange())
+            return;
+        const auto [shortest, longest] = *camera->exposureRange();
+        camera->setExposure(shortest * std::pow(longest / shortest, static_cast<double>(step) / kSliderSteps));
+        refresh();
+    });
+    connect(load_, &QPushButton::clicked, this, [this] {
+        const QString file = QFileDialog::getOpenFileName(this, tr("Intrinsics"), {},
+                                                          tr("Camera files (*.yaml *.yml *.xml);;All files (*)"));
+        if (!file.isEmpty())
+            loadIntrinsics(file);
+    });
+    connect(makers_, &QPushButton::clicked, this,
+            [this] { adopt(*workbench_.hands->intrinsics, tr("Use the maker's intrinsics")); });
+    connect(&workbench, &Workbench::cameraChosen, this, &CameraPage::listFormats);
+    connect(&workbench.session(), &Session::decisionsChanged, this, &CameraPage::refresh);
+    connect(&scan, &ScanPresenter::pictureChanged, this, [this] {
+        if (isActive_)
+            showPicture();
+    });
+    listFormats();
+}
+
+void CameraPage::setActive(bool active) {
+    isActive_ = active;
+    if (active && workbench_.camera() == nullptr && !workbench_.cameraOffers.empty())
+        workbench_.chooseCamera(0);
+    scan_.setActive(active);
+    refresh();
+}
+
+void CameraPage::loadIntrinsics(const QString& file) {
+    const auto camera = readCameraModel(file.toStdString());
+    if (!camera) {
+        emit failed(QString::fromStdString(camera.error().message()));
+        return;
+    }
+    adopt(*camera, tr("Load intrinsics"));
+}
+
+void CameraPage::adopt(const CameraModel& camera, const QString& text) {
+    workbench_.session().decide(text, [&](Decisions& decisions) { decisions.camera = camera; });
+}
+
+void CameraPage::listFormats() {
+    formats_->clear();
+    if (const FrameSource* camera = workbench_.camera()) {
+        devices_->setCurrentIndex(workbench_.chosenCamera());
+        for (const FrameFormat& format : camera->formats()) {
+            formats_->addItem(tr("%1 × %2, %3 /s").arg(format.width).arg(format.height).arg(format.framesPerSecond));
+            if (format == camera->format())
+                formats_->setCurrentIndex(formats_->count() - 1);
+        }
+        const auto range = camera->exposureRange();
+        exposure_->setEnabled(range.has_value());
+        if (range && camera->exposure()) {
+            const QSignalBlocker blocker(exposure_);
+            exposure_->setValue(static_cast<int>(std::lround(
+                kSliderSteps * std::log(*camera->exposure() / range->first) / std::log(range->second / range->first))));
+        }
+    }
+    refresh();
+}
+
+void CameraPage::showPicture() {
+    picture_->setImage(toImage(scan_.picture()));
+    if (scan_.picture().empty())
+        return;
+    const PictureFigures figures = figuresOf(scan_.picture());
+    histogram_->setFigures(figures);
+    figures_->setText(tr("Clipped: %1 % bright, %2 % dark.  Sharpness %3 (largest is sharpest)")
+                          .arg(100 * figures.bright, 0, 'f', 2)
+                          .arg(100 * figures.dark, 0, 'f', 2)
+                          .arg(figures.sharpness, 0, 'f', 3));
+}
+
+void CameraPage::refresh() {
+    const FrameSource* source = workbench_.camera();
+    exposureText_->setText(source != nullptr && source->exposure()
+                               ? tr("%1 ms").arg(1e3 * *source->exposure(), 0, 'f', 1)
+                               : tr("automatic"));
+    const auto& camera = workbench_.session().decisions().camera;
+    makers_->setEnabled(!camera);
+    if (!camera) {
+        intrinsics_->setText(tr("<b>Intrinsics are not known yet.</b>"));
+        return;
+    }
+    QString text = tr("<b>Intrinsics</b> for %1 × %2 pixels: focal lengths %3 and %4 px, centre (%5, %6), %7 with %8 "
+                      "coefficients.")
+                       .arg(camera->width)
+                       .arg(camera->height)
+                       .arg(camera->fx, 0, 'f', 1)
+                       .arg(camera->fy, 0, 'f', 1)
+                       .arg(camera->cx, 0, 'f', 1)
+                       .arg(camera->cy, 0, 'f', 1)
+                       .arg(QString::fromUtf8(name(camera->distortionModel).data()))
+                       .arg(camera->distortion.size());
+    if (source != nullptr && (source->format().width != camera->width || source->format().height != camera->height))
+        text += tr(" <b>The camera gives %1 × %2: choose that size, or other intrinsics.</b>")
+                    .arg(source->format().width)
+                    .arg(source->format().height);
+    intrinsics_->setText(text);
+}
+
+}  // namespace skincal

@@ -1,0 +1,395 @@
+#include "ui/window/main_window.h"
+
+#include <QAction>
+#include <QApplication>
+#include <QCheckBox>
+#include <QCloseEvent>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QLabel>
+#include <QListView>
+#include <QMimeData>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QSplitter>
+#include <QStackedWidget>
+#include <QStatusBar>
+#include <QToolBar>
+#include <QVBoxLayout>
+
+#include "ui/pages/camera_page.h"
+#include "ui/pages/connect_page.h"
+#include "ui/pages/export_page.h"
+#include "ui/pages/pose_page.h"
+#include "ui/pages/result_page.h"
+#include "ui/pages/scan_page.h"
+#include "ui/pages/views_page.h"
+#include "ui/scene3d/body_view_widget.h"
+#include "ui/widgets/theme.h"
+#include "ui/window/step_delegate.h"
+
+namespace skincal {
+namespace {
+
+std::size_t indexOf(Step step) {
+    return static_cast<std::size_t>(step);
+}
+
+}  // namespace
+
+MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
+    : QMainWindow(parent),
+      workbench_(workbench),
+      connection_(workbench),
+      pose_(workbench),
+      scan_(workbench),
+      views_(workbench),
+      export_(workbench),
+      steps_(workbench, connection_, scan_),
+      problems_(workbench, connection_, scan_) {
+    setWindowTitle(tr("SkinCal[*]"));
+    setAcceptDrops(true);
+    resize(1440, 900);
+    buildPages();
+    buildFrame();
+    buildToolBar();
+
+    Session& session = workbench_.session();
+    connect(&session, &Session::solutionChanged, this, &MainWindow::showBody);
+    connect(&session, &Session::guidanceChanged, this, &MainWindow::refresh);
+    connect(&session, &Session::solvingChanged, this, [this](bool solving) {
+        busy_->setVisible(solving);
+        if (!solving)
+            statusBar()->clearMessage();
+    });
+    connect(&session, &Session::solvingProgressed, this,
+            [this](const QString& stage, double) { statusBar()->showMessage(tr("Solving: %1").arg(stage)); });
+    connect(&session, &Session::modifiedChanged, this, &QWidget::setWindowModified);
+    connect(&session, &Session::fileFailed, this, [this](const QString& why) {
+        statusBar()->clearMessage();
+        problems_.setNotice(why, Step::Connect);
+    });
+    connect(&session, &Session::opened, this, [this](const QString& directory) {
+        problems_.clearNotice();
+        statusBar()->showMessage(tr("Opened %1").arg(directory));
+        file_ = directory;
+        showStep(steps_.next());
+    });
+    connect(&session, &Session::saved, this, [this](const QString& directory) {
+        problems_.clearNotice();
+        statusBar()->showMessage(tr("Saved %1").arg(directory));
+    });
+    connect(&steps_, &StepModel::changed, this, &MainWindow::refresh);
+    connect(&problems_, &QAbstractItemModel::modelReset, this, &MainWindow::refresh);
+    setDark(Theme::current().isDark);
+    showStep(Step::Connect);
+    refresh();
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::buildPages() {
+    stack_ = new QStackedWidget;
+    auto* connectPage = new ConnectPage(workbench_, connection_);
+    auto* posePage = new PosePage(pose_);
+    auto* cameraPage = new CameraPage(workbench_, scan_);
+    auto* scanPage = new ScanPage(workbench_, scan_);
+    auto* viewsPage = new ViewsPage(views_, scan_);
+    auto* resultPage = new ResultPage(workbench_);
+    auto* exportPage = new ExportPage(export_);
+    pages_ = {connectPage, posePage, cameraPage, scanPage, viewsPage, resultPage, exportPage, nullptr};
+    for (Page* page : pages_) {
+        if (page == nullptr)
+            continue;
+        auto* area = new QScrollArea;
+        area->setWidgetResizable(true);
+        area->setFrameShape(QFrame::NoFrame);
+        area->setWidget(page);
+        stack_->addWidget(area);
+    }
+    connect(connectPage, &ConnectPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
+    connect(posePage, &PosePage::modulesSelected, this, &MainWindow::showModules);
+    connect(scanPage, &ScanPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
+    connect(viewsPage, &ViewsPage::scanAsked, this, [this] {
+        showStep(Step::Scan);
+        scan_.start();
+    });
+    connect(cameraPage, &CameraPage::failed, this,
+            [this](const QString& why) { problems_.setNotice(why, Step::Camera); });
+    connect(exportPage, &ExportPage::failed, this,
+            [this](const QString& why) { problems_.setNotice(why, Step::Export); });
+    connect(&export_, &ExportPresenter::written, this, [this] {
+        problems_.clearNotice();
+        steps_.noteExport();
+    });
+}
+
+QWidget* MainWindow::buildSteps() {
+    stepList_ = new QListView;
+    stepList_->setObjectName(QStringLiteral("steps"));
+    stepList_->setAccessibleName(tr("Steps"));
+    stepList_->setModel(&steps_);
+    stepList_->setItemDelegate(new StepDelegate(stepList_));
+    stepList_->setFrameShape(QFrame::NoFrame);
+    stepList_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    stepList_->setMinimumWidth(210);
+    stepList_->setMaximumWidth(290);
+    connect(stepList_->selectionModel(), &QItemSelectionModel::currentChanged, this, [this](const QModelIndex& to) {
+        const auto row = static_cast<std::size_t>(to.row());
+        for (std::size_t i = 0; i < pages_.size(); ++i) {
+            if (pages_.at(i) != nullptr && i != row)
+                pages_.at(i)->setActive(false);
+        }
+        if (pages_.at(row) == nullptr)
+            return;
+        stack_->setCurrentIndex(static_cast<int>(row));
+        pages_.at(row)->setActive(true);
+        refresh();
+    });
+    return stepList_;
+}
+
+QWidget* MainWindow::buildBody() {
+    auto* panel = new QWidget;
+    auto* column = new QVBoxLayout(panel);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    auto* bar = new QHBoxLayout;
+    bar->setContentsMargins(10, 6, 10, 6);
+    colours_ = new QComboBox;
+    colours_->setAccessibleName(tr("Colours of the body"));
+    colours_->setToolTip(tr("What the colours of the modules tell"));
+    const std::vector<std::pair<QString, ColourMode>> modes{{tr("Patch"), ColourMode::Patch},
+                                                            {tr("Uncertainty"), ColourMode::Uncertainty},
+                                                            {tr("Residual"), ColourMode::Residual},
+                                                            {tr("Number of views"), ColourMode::ViewCount},
+                                                            {tr("Last view"), ColourMode::LastView}};
+    for (const auto& [name, mode] : modes)
+        colours_->addItem(name, static_cast<int>(mode));
+    auto* ellipsoids = new QCheckBox(tr("Ellipsoids"));
+    ellipsoids->setToolTip(tr("Where each module is with three standard deviations, enlarged as the legend says"));
+    auto* measure = new QPushButton(tr("Measure"));
+    measure->setCheckable(true);
+    measure->setToolTip(tr("Click two modules to see how far their LEDs are apart"));
+    auto* fit = new QPushButton(tr("Fit"));
+    fit->setToolTip(tr("Show the whole body (F)"));
+    bar->addWidget(colours_);
+    bar->addWidget(ellipsoids);
+    bar->addStretch();
+    bar->addWidget(measure);
+    bar->addWidget(fit);
+    column->addLayout(bar);
+    body_ = new BodyViewWidget;
+    column->addWidget(body_, 1);
+    connect(colours_, &QComboBox::currentIndexChanged, this,
+            [this] { body_->setColourMode(static_cast<ColourMode>(colours_->currentData().toInt())); });
+    connect(ellipsoids, &QCheckBox::toggled, body_, &BodyViewWidget::setEllipsoidsShown);
+    connect(measure, &QPushButton::toggled, body_, &BodyViewWidget::setMeasuring);
+    connect(fit, &QPushButton::clicked, body_, &BodyViewWidget::fitView);
+    connect(body_, &BodyViewWidget::moduleClicked, this, [this](ModuleId module) {
+        showModules({module});
+        connection_.blink(module);
+    });
+    return panel;
+}
+
+QWidget* MainWindow::buildNavigation() {
+    auto* bar = new QWidget;
+    auto* row = new QHBoxLayout(bar);
+    row->setContentsMargins(20, 4, 20, 12);
+    back_ = new QPushButton;
+    back_->setToolTip(tr("To the step before (Alt+Left)"));
+    back_->setShortcut(QKeySequence(Qt::ALT | Qt::Key_Left));
+    next_ = new QPushButton;
+    next_->setObjectName(QStringLiteral("next"));
+    next_->setToolTip(tr("To the next step (Alt+Right)"));
+    next_->setShortcut(QKeySequence(Qt::ALT | Qt::Key_Right));
+    row->addWidget(back_);
+    row->addStretch();
+    row->addWidget(next_);
+    connect(back_, &QPushButton::clicked, this, [this] { showStep(kSteps.at(indexOf(step()) - 1)); });
+    connect(next_, &QPushButton::clicked, this, [this] { showStep(kSteps.at(indexOf(step()) + 1)); });
+    return bar;
+}
+
+void MainWindow::buildFrame() {
+    auto* centre = new QWidget;
+    auto* column = new QVBoxLayout(centre);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    column->addWidget(stack_, 1);
+    column->addWidget(buildNavigation());
+
+    auto* across = new QSplitter(Qt::Horizontal);
+    across->addWidget(buildSteps());
+    across->addWidget(centre);
+    across->addWidget(buildBody());
+    across->setStretchFactor(0, 0);
+    across->setStretchFactor(1, 5);
+    across->setStretchFactor(2, 4);
+    across->setSizes({230, 680, 530});
+    across->setChildrenCollapsible(false);
+
+    problemList_ = new QListView;
+    problemList_->setObjectName(QStringLiteral("problems"));
+    problemList_->setAccessibleName(tr("Problems"));
+    problemList_->setModel(&problems_);
+    problemList_->setItemDelegate(new ProblemDelegate(problemList_));
+    problemList_->setFrameShape(QFrame::NoFrame);
+    problemList_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    problemList_->setToolTip(tr("What is wrong or missing; activate one to go where it is mended"));
+    connect(problemList_, &QListView::activated, this, [this](const QModelIndex& index) { jumpTo(index.row()); });
+    connect(problemList_, &QListView::clicked, this, [this](const QModelIndex& index) { jumpTo(index.row()); });
+
+    auto* down = new QSplitter(Qt::Vertical);
+    down->addWidget(across);
+    down->addWidget(problemList_);
+    down->setStretchFactor(0, 1);
+    down->setSizes({760, 96});
+    down->setCollapsible(0, false);
+    setCentralWidget(down);
+
+    busy_ = new QProgressBar;
+    busy_->setRange(0, 0);
+    busy_->setMaximumWidth(120);
+    busy_->setVisible(false);
+    busy_->setAccessibleName(tr("Solving"));
+    statusBar()->addPermanentWidget(busy_);
+}
+
+void MainWindow::buildToolBar() {
+    QToolBar* bar = addToolBar(tr("Tools"));
+    bar->setMovable(false);
+    bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
+    auto* open = bar->addAction(tr("Open …"));
+    open->setShortcut(QKeySequence::Open);
+    open->setToolTip(tr("Open a recording (a .skinrec folder); one can also be dropped on the window"));
+    connect(open, &QAction::triggered, this, [this] {
+        const QString directory = QFileDialog::getExistingDirectory(this, tr("Open a recording"));
+        if (!directory.isEmpty())
+            openRecording(directory);
+    });
+    auto* save = bar->addAction(tr("Save"));
+    save->setShortcut(QKeySequence::Save);
+    save->setToolTip(tr("Save what was measured and decided as a recording (a .skinrec folder)"));
+    connect(save, &QAction::triggered, this, [this] { this->save(false); });
+    bar->addSeparator();
+    QUndoStack& undo = workbench_.session().undoStack();
+    auto* undoAction = undo.createUndoAction(this, tr("Undo"));
+    undoAction->setShortcut(QKeySequence::Undo);
+    undoAction->setObjectName(QStringLiteral("undo"));
+    auto* redoAction = undo.createRedoAction(this, tr("Redo"));
+    redoAction->setShortcut(QKeySequence::Redo);
+    redoAction->setObjectName(QStringLiteral("redo"));
+    bar->addAction(undoAction);
+    bar->addAction(redoAction);
+    auto* space = new QWidget;
+    space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+    bar->addWidget(space);
+    dark_ = bar->addAction(tr("Dark"));
+    dark_->setCheckable(true);
+    dark_->setToolTip(tr("Dark or light colours"));
+    connect(dark_, &QAction::toggled, this, &MainWindow::setDark);
+}
+
+Step MainWindow::step() const {
+    return kSteps.at(static_cast<std::size_t>(std::max(0, stepList_->currentIndex().row())));
+}
+
+void MainWindow::showStep(Step step) {
+    stepList_->setCurrentIndex(steps_.index(static_cast<int>(indexOf(step))));
+}
+
+void MainWindow::setDark(bool dark) {
+    const Theme theme = dark ? Theme::dark() : Theme::light();
+    QApplication::setPalette(theme.palette());
+    qApp->setStyleSheet(theme.styleSheet());
+    body_->setDark(dark);
+    const QSignalBlocker blocker(dark_);
+    dark_->setChecked(dark);
+}
+
+void MainWindow::openRecording(const QString& directory) {
+    statusBar()->showMessage(tr("Reading %1 …").arg(directory));
+    workbench_.session().open(directory);
+}
+
+void MainWindow::save(bool elsewhere) {
+    Session& session = workbench_.session();
+    if (!session.decisions().camera) {
+        problems_.setNotice(tr("A recording needs the camera's intrinsics: give them before saving."), Step::Camera);
+        return;
+    }
+    if (file_.isEmpty() || elsewhere) {
+        QString chosen = QFileDialog::getSaveFileName(this, tr("Save as a recording"), QStringLiteral("skin.skinrec"));
+        if (chosen.isEmpty())
+            return;
+        if (!chosen.endsWith(QStringLiteral(".skinrec")))
+            chosen += QStringLiteral(".skinrec");
+        file_ = chosen;
+    }
+    session.save(file_);
+}
+
+void MainWindow::showBody() {
+    const auto& solution = workbench_.session().solution();
+    body_->setBody(solution ? std::shared_ptr<const BodyModel>(solution, &solution->body) : nullptr);
+    refresh();
+}
+
+void MainWindow::showModules(const std::vector<ModuleId>& modules) {
+    body_->setSelected(modules);
+}
+
+void MainWindow::refresh() {
+    body_->setGuideCamera(step() == Step::Views ? views_.target() : std::nullopt);
+    const std::size_t row = indexOf(step());
+    back_->setVisible(row > 0);
+    if (row > 0)
+        back_->setText(tr("‹ %1").arg(nameOf(kSteps.at(row - 1))));
+    const bool hasNext = row + 1 < kSteps.size() && pages_.at(row + 1) != nullptr;
+    next_->setVisible(hasNext);
+    if (hasNext) {
+        next_->setText(tr("%1 ›").arg(nameOf(kSteps.at(row + 1))));
+        const StepStatus status = steps_.states().at(row).status;
+        const bool isPrimary = status == StepStatus::Done;
+        if (next_->property("primary").toBool() != isPrimary) {
+            next_->setProperty("primary", isPrimary);
+            next_->setStyleSheet(next_->styleSheet());  // polishes it anew
+        }
+    }
+}
+
+void MainWindow::jumpTo(int row) {
+    const Problem problem = problems_.problemAt(row);
+    showStep(problem.step);
+    if (!problem.view.empty())
+        scan_.showView(problem.view);
+    if (problem.pose >= 0)
+        static_cast<PosePage*>(pages_.at(indexOf(Step::Pose)))->selectPose(problem.pose);
+    if (!problem.modules.empty())
+        showModules(problem.modules);
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+    if (event->mimeData()->hasUrls())
+        event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+    const auto urls = event->mimeData()->urls();
+    if (!urls.isEmpty() && urls.first().isLocalFile())
+        openRecording(urls.first().toLocalFile());
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+    for (Page* page : pages_) {
+        if (page != nullptr)
+            page->setActive(false);
+    }
+    scan_.cancel();
+    QMainWindow::closeEvent(event);
+}
+
+}  // namespace skincal

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <QMainWindow>
+#include <array>
+#include <memory>
+
+#include "ui/presenters/export_presenter.h"
+#include "ui/presenters/pose_presenter.h"
+#include "ui/presenters/problem_model.h"
+#include "ui/presenters/step_model.h"
+#include "ui/presenters/views_presenter.h"
+
+class QAction;
+class QComboBox;
+class QListView;
+class QProgressBar;
+class QPushButton;
+class QStackedWidget;
+
+namespace skincal {
+
+class BodyViewWidget;
+class Page;
+
+/// The window: steps on the left, the page in the middle, the body on the right, what is wrong below.
+class MainWindow : public QMainWindow {
+    Q_OBJECT
+  public:
+    /// @param workbench  with its offers; must outlive the window.
+    explicit MainWindow(Workbench& workbench, QWidget* parent = nullptr);
+    ~MainWindow() override;
+
+    void showStep(Step step);
+    [[nodiscard]] Step step() const;
+    void setDark(bool dark);
+    /// A recording from a file; a complaint becomes a problem.
+    void openRecording(const QString& directory);
+
+    [[nodiscard]] BodyViewWidget& bodyView() { return *body_; }
+    [[nodiscard]] StepModel& steps() { return steps_; }
+    [[nodiscard]] ProblemModel& problems() { return problems_; }
+
+  protected:
+    void dragEnterEvent(QDragEnterEvent* event) override;
+    void dropEvent(QDropEvent* event) override;
+    void closeEvent(QCloseEvent* event) override;
+
+  private:
+    void buildPages();
+    void buildToolBar();
+    void buildFrame();
+    [[nodiscard]] QWidget* buildSteps();
+    [[nodiscard]] QWidget* buildBody();
+    [[nodiscard]] QWidget* buildNavigation();
+    void showBody();
+    void refresh();
+    void jumpTo(int problem);
+    void save(bool elsewhere);
+    void showModules(const std::vector<ModuleId>& modules);
+
+    Workbench& workbench_;
+    ConnectPresenter connection_;
+    PosePresenter pose_;
+    ScanPresenter scan_;
+    ViewsPresenter views_;
+    ExportPresenter export_;
+    StepModel steps_;
+    ProblemModel problems_;
+
+    QListView* stepList_ = nullptr;
+    QStackedWidget* stack_ = nullptr;
+    std::array<Page*, kSteps.size()> pages_{};
+    BodyViewWidget* body_ = nullptr;
+    QComboBox* colours_ = nullptr;
+    QListView* problemList_ = nullptr;
+    QPushButton* back_ = nullptr;
+    QPushButton* next_ = nullptr;
+    QProgressBar* busy_ = nullptr;
+    QAction* dark_ = nullptr;
+    QString file_;
+};
+
+}  // namespace skincal

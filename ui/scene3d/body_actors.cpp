@@ -81,7 +81,7 @@ BodyActors::BodyActors(vtkRenderer& renderer)
     paint(*selected_, {255, 255, 255});
     up_->GetProperty()->SetAmbient(0.45);
     up_->GetProperty()->SetDiffuse(0.6);
-    ellipsoids_->GetProperty()->SetOpacity(0.75);
+    ellipsoids_->GetProperty()->SetOpacity(0.9);
     ellipsoids_->GetProperty()->SetAmbient(0.35);
     ellipsoids_->GetProperty()->SetDiffuse(0.75);
     ellipsoids_->GetProperty()->SetSpecular(0.25);

@@ -75,7 +75,7 @@ void BodyViewWidget::resetView() {
 void BodyViewWidget::fitEverything() {
     std::vector<Vector3d> points = bodyPoints();
     const auto add = [&](const Isometry3d& T_r_v, double size) {
-        points.push_back(T_r_v.translation());
+        points.emplace_back(T_r_v.translation());
         for (const double x : {-0.8, 0.8}) {
             for (const double y : {-0.45, 0.45})
                 points.push_back(T_r_v * Vector3d(size * Vector3d(x, y, 1)));

@@ -4,12 +4,9 @@
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
 
-#include <QFocusEvent>
-#include <QKeyEvent>
 #include <QPainter>
 #include <QResizeEvent>
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "ui/scene3d/body_actors.h"
@@ -178,51 +175,6 @@ void BodyViewWidget::setMeasuring(bool measuring) {
     updateWords();
 }
 
-void BodyViewWidget::click(const QPointF& position) {
-    setFocus(Qt::MouseFocusReason);
-    const auto module = moduleAt(position);
-    if (measuring_) {
-        if (module)
-            measureTo(*module);
-    } else if (module) {
-        emit moduleClicked(*module);
-    } else {
-        emit nothingClicked();
-    }
-}
-
-void BodyViewWidget::measureTo(ModuleId module) {
-    // A third click begins anew, a second one on the same module changes nothing.
-    if (measured_.size() == 2)
-        measured_.clear();
-    if (measured_.empty() || measured_.front() != module)
-        measured_.push_back(module);
-    updateWords();
-    const std::vector<Vector3d> ends = measurePoints();
-    if (ends.size() == 2)
-        emit measured(measured_[0], measured_[1], (ends[1] - ends[0]).norm());
-}
-
-std::optional<ModuleId> BodyViewWidget::moduleAt(const QPointF& position) const {
-    if (layout_.modules.empty())
-        return std::nullopt;
-    vtkCamera* camera = scene_->renderer().GetActiveCamera();
-    const double aspect = static_cast<double>(scene_->width()) / std::max(1, scene_->height());
-    const double half = std::tan(0.5 * camera->GetViewAngle() * kDegree);
-    const double* shift = camera->GetWindowCenter();
-    const double x = (2 * position.x() / std::max(1, scene_->width()) - 1 + shift[0]) * half * aspect;
-    const double y = (1 - 2 * position.y() / std::max(1, scene_->height()) + shift[1]) * half;
-    const Vector3d eye(camera->GetPosition());
-    const Vector3d ahead(camera->GetDirectionOfProjection());
-    const Vector3d up = Vector3d(camera->GetViewUp());
-    const Vector3d right = ahead.cross(up).normalized();
-    return pickModule(layout_, eye, ahead + x * right + y * right.cross(ahead));
-}
-
-std::optional<QPointF> BodyViewWidget::positionOf(const Vector3d& point) const {
-    return overlay_->project(point);
-}
-
 QImage BodyViewWidget::grabPicture() {
     overlay_->follow();
     const QImage scene = scene_->grabFramebuffer();
@@ -235,56 +187,12 @@ QImage BodyViewWidget::grabPicture() {
     return picture;
 }
 
-void BodyViewWidget::keyPressEvent(QKeyEvent* event) {
-    constexpr double kStep = 10 * kDegree;
-    constexpr double kZoom = 1.2;
-    switch (event->key()) {
-        case Qt::Key_Left:
-            return scene_->orbit(-kStep, 0);
-        case Qt::Key_Right:
-            return scene_->orbit(kStep, 0);
-        case Qt::Key_Up:
-            return scene_->orbit(0, kStep);
-        case Qt::Key_Down:
-            return scene_->orbit(0, -kStep);
-        case Qt::Key_Plus:
-        case Qt::Key_Equal:
-            return scene_->zoom(kZoom);
-        case Qt::Key_Minus:
-            return scene_->zoom(1 / kZoom);
-        case Qt::Key_F:
-            return event->modifiers().testFlag(Qt::ShiftModifier) ? fitEverything() : fitView();
-        case Qt::Key_Home:
-            return resetView();
-        case Qt::Key_Escape:
-            if (!measured_.empty()) {
-                measured_.clear();
-                return updateWords();
-            }
-            break;
-        default:
-            break;
-    }
-    QWidget::keyPressEvent(event);
-}
-
 void BodyViewWidget::resizeEvent(QResizeEvent* /*event*/) {
     scene_->setGeometry(rect());
     overlay_->setGeometry(rect());
     overlay_->raise();
     if (!movedByUser_)
         resetView();
-}
-
-void BodyViewWidget::focusInEvent(QFocusEvent* event) {
-    // Those who come with the mouse know where they are.
-    focusFrame_ = event->reason() != Qt::MouseFocusReason && event->reason() != Qt::ActiveWindowFocusReason;
-    updateWords();
-}
-
-void BodyViewWidget::focusOutEvent(QFocusEvent* /*event*/) {
-    focusFrame_ = false;
-    updateWords();
 }
 
 void BodyViewWidget::changeEvent(QEvent* event) {

@@ -133,13 +133,12 @@ SceneLayout layOut(const BodyModel& body) {
         const BodyModule& module = body.modules[i];
         const auto type = types.find(module.type);
         ShownModule shown{i, module.id, module.patch, type == types.end() ? nullptr : type->second, {}, false};
-        if (shown.type == nullptr || shown.type->outline.size() < 3) {
-            ++layout.unknown;
-        } else if (module.T_body_module) {
+        const bool drawable = shown.type != nullptr && shown.type->outline.size() >= 3;
+        if (drawable && module.T_body_module) {
             shown.T_s_u = *module.T_body_module;
             shown.placed = true;
             layout.modules.push_back(shown);
-        } else if (module.patch && module.T_patch_module) {
+        } else if (drawable && module.patch && module.T_patch_module) {
             shown.T_s_u = *module.T_patch_module;
             apart[*module.patch].push_back(shown);
         } else {

@@ -83,6 +83,8 @@ class SceneOverlay : public QWidget {
     [[nodiscard]] QColor softInk() const;
     [[nodiscard]] QColor ground() const;
 
+    static constexpr double kMargin = 14;  ///< about what stands in the corners, px
+
     vtkCamera& camera_;
     OverlayContent content_;
 };

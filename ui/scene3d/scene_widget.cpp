@@ -140,10 +140,11 @@ void SceneWidget::releaseGraphics() {
     doneCurrent();
 }
 
-void SceneWidget::resizeGL(int width, int height) {
+void SceneWidget::takeSize() {
+    // At every frame: another screen brings another ratio without a resize.
     const double ratio = devicePixelRatioF();
-    const int w = std::max(1, static_cast<int>(std::lround(width * ratio)));
-    const int h = std::max(1, static_cast<int>(std::lround(height * ratio)));
+    const int w = std::max(1, static_cast<int>(std::lround(width() * ratio)));
+    const int h = std::max(1, static_cast<int>(std::lround(height() * ratio)));
     window_->SetSize(w, h);
     window_->SetDPI(static_cast<int>(std::lround(72 * ratio)));
     interactor_->UpdateSize(w, h);
@@ -153,6 +154,7 @@ void SceneWidget::paintGL() {
     QElapsedTimer timer;
     timer.start();
     painting_ = true;
+    takeSize();
     window_->SetMultiSamples(slow_ && restTimer_.isActive() ? 0 : kSamples);
     renderer_->ResetCameraClippingRange();
     vtkOpenGLState* state = window_->GetState();

@@ -56,7 +56,6 @@ class SceneWidget : public QOpenGLWidget {
 
   protected:
     void initializeGL() override;
-    void resizeGL(int width, int height) override;
     void paintGL() override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
@@ -74,6 +73,7 @@ class SceneWidget : public QOpenGLWidget {
     void tellPosition(const QPointF& position, Qt::KeyboardModifiers modifiers);
     void moved();
     void drawNow();
+    void takeSize();
 
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> window_;
     vtkSmartPointer<vtkGenericRenderWindowInteractor> interactor_;

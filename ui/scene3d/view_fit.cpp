@@ -29,7 +29,7 @@ Spectator bestSpectator(std::span<const Isometry3d> boards, const std::optional<
 
     const Matrix3d across = Matrix3d::Identity() - from * from.transpose();
     const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(across * spread * across);
-    const Vector3d extent = axes.eigenvalues();
+    const Vector3d& extent = axes.eigenvalues();
     constexpr double kLonger = 1.3;  // squared ratio of the sides from which a body has a direction
     if (extent[2] > kLonger * extent[1]) {
         const Vector3d along = axes.eigenvectors().col(2);
@@ -55,7 +55,7 @@ double fitCamera(vtkCamera& camera, const Spectator& spectator, std::span<const 
     // d right + c >= max(x + z right) and d left - c >= max(z left - x); the same for top and bottom.
     const double half = std::tan(0.5 * kAngle_deg * kDegree);
     struct Side {
-        double more, less;  // tangents of the angles that are free on either side of the axis
+        double more = 0, less = 0;  // tangents of the angles that are free on either side of the axis
         double a = -1e300, b = -1e300;
     };
     std::array<Side, 2> sides{Side{half * aspect * (1 - 2 * margins.right), half * aspect * (1 - 2 * margins.left)},

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <QFile>
+#include <cstdlib>
+
 #include "tests/ui/scene3d/baseline.h"
 #include "tests/ui/scene3d/sample_body.h"
 #include "tests/ui/scene3d/view_fixture.h"
@@ -45,6 +48,13 @@ TEST(Pictures, OfGuidesAndSelection) {
 TEST(Pictures, OfNothing) {
     const auto view = shownView();
     EXPECT_TRUE(matchesBaseline(view->grabPicture(), "empty-dark"));
+}
+
+TEST(Pictures, WithoutABaselineFail) {
+    if (std::getenv("SKINCAL_UPDATE_BASELINES") != nullptr)
+        GTEST_SKIP() << "it would be written";
+    EXPECT_FALSE(matchesBaseline(QImage(48, 36, QImage::Format_RGB32), "there-is-none"));
+    QFile::remove("there-is-none-drawn.png");
 }
 
 TEST(Pictures, DifferWhereTheSceneDoes) {

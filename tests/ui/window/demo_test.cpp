@@ -1,0 +1,81 @@
+// The whole demo in a real window, by clicks and keys, and what an operator does besides.
+
+#include <gtest/gtest.h>
+
+#include <QLineEdit>
+#include <QTemporaryDir>
+
+#include "core/estimation/compare.h"
+#include "core/formats/body_json.h"
+#include "tests/ui/window/driven_window.h"
+
+namespace skincal {
+namespace {
+
+BodyComparison comparedWithTruth(const BodyModel& body, const World& world) {
+    std::vector<NamedPose> ours;
+    std::vector<NamedPose> truth;
+    for (const BodyModule& module : body.modules) {
+        if (module.T_body_module)
+            ours.push_back({module.id, *module.T_body_module});
+    }
+    for (std::size_t u = 0; u < world.skin.modules.size(); ++u)
+        truth.push_back({world.skin.modules[u].id, world.T_r_u[u]});
+    return compareBodies(ours, truth).value();
+}
+
+TEST(Demo, LeadsFromConnectToAnExportedFile) {
+    DrivenWindow driven;
+    driven.takePicture("1-connect-empty");
+    ASSERT_TRUE(driven.connectSkin());
+    driven.takePicture("1-connect");
+    EXPECT_EQ(driven.session().measured().skin.modules.size(), driven.rig.world().skin.modules.size());
+    EXPECT_EQ(driven.steps().states()[0].status, StepStatus::Done);
+
+    ASSERT_TRUE(driven.capturePoses(8));
+    ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));
+    driven.takePicture("2-pose");
+    ASSERT_TRUE(driven.useMakersIntrinsics());
+    ASSERT_TRUE(driven.waitFor([&] { return driven.find<QPushButton>("scan") != nullptr; }));
+    driven.window.showStep(Step::Camera);
+    driven.takePicture("3-camera");
+    ASSERT_TRUE(driven.scanHere());
+    ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));
+    driven.takePicture("4-scan");
+
+    const auto patches = [&] { return driven.session().solution()->body.patches.size(); };
+    for (int view = 1; view < 12 && driven.patchesPlaced() < patches(); ++view) {
+        ASSERT_TRUE(driven.moveCameraOn());
+        if (view == 2)
+            driven.takePicture("5-views");
+        ASSERT_TRUE(driven.scanHere()) << "view " << view;
+        ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));
+    }
+    EXPECT_EQ(driven.patchesPlaced(), patches());
+    driven.window.showStep(Step::Result);
+    driven.takePicture("6-result");
+
+    driven.window.showStep(Step::Export);
+    const QTemporaryDir folder;
+    const QString file = folder.filePath("arm.body.json");
+    auto* line = driven.find<QLineEdit>("file");
+    ASSERT_NE(line, nullptr);
+    line->clear();
+    QTest::keyClicks(line, file);
+    ASSERT_TRUE(driven.click("write"));
+    driven.takePicture("7-export");
+    EXPECT_EQ(driven.steps().states()[6].status, StepStatus::Done);
+
+    const auto body = readBody(file.toStdString());
+    ASSERT_TRUE(body) << body.error().message();
+    const BodyComparison difference = comparedWithTruth(*body, driven.rig.world());
+    EXPECT_EQ(difference.compared, driven.rig.world().skin.modules.size());
+    EXPECT_LT(difference.positionRms, 1e-3);
+    EXPECT_LT(difference.rotationRms, 1.5 * kDegree);
+    driven.window.setDark(false);
+    driven.window.showStep(Step::Result);
+    driven.takePicture("6-result-light");
+}
+
+}  // namespace
+}  // namespace skincal

@@ -1,0 +1,107 @@
+#include "tests/ui/window/driven_window.h"
+
+#include <QDir>
+#include <QElapsedTimer>
+#include <QPainter>
+
+#include "ui/scene3d/body_view_widget.h"
+
+namespace skincal {
+namespace {
+
+constexpr int kPatience_ms = 120'000;  // on machines that do much else
+
+Workbench& withRig(Workbench& workbench, SimulatedRig& rig) {
+    rig.setSpeed(0);
+    offerRig(workbench, rig);
+    return workbench;
+}
+
+}  // namespace
+
+DrivenWindow::DrivenWindow(const std::string& scenario)
+    : rig(*findScenario(scenario), 1), window(withRig(workbench, rig)) {
+    window.show();
+    (void)QTest::qWaitForWindowExposed(&window);
+}
+
+bool DrivenWindow::waitFor(const std::function<bool()>& isSo) {
+    QElapsedTimer timer;
+    timer.start();
+    while (!isSo()) {
+        if (timer.elapsed() > kPatience_ms)
+            return false;
+        QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents | QEventLoop::AllEvents);
+    }
+    return true;
+}
+
+bool DrivenWindow::click(const char* name) {
+    auto* button = find<QPushButton>(name);
+    if (button == nullptr || !button->isVisible() || !waitFor([&] { return button->isEnabled(); }))
+        return false;
+    QTest::mouseClick(button, Qt::LeftButton);
+    return true;
+}
+
+std::size_t DrivenWindow::patchesPlaced() {
+    if (!session().solution())
+        return 0;
+    const auto& patches = session().solution()->body.patches;
+    return static_cast<std::size_t>(std::count_if(
+        patches.begin(), patches.end(), [](const BodyPatch& patch) { return patch.T_body_patch.has_value(); }));
+}
+
+bool DrivenWindow::isSolved() {
+    return session().solution() && session().solution()->revision == session().revision() && !session().isSolving();
+}
+
+bool DrivenWindow::connectSkin() {
+    window.showStep(Step::Connect);
+    return click("connect") && waitFor([&] { return workbench.isSkinReady(); });
+}
+
+bool DrivenWindow::capturePoses(std::size_t poses) {
+    window.showStep(Step::Pose);
+    const auto count = [&] { return posesOf(session().measured(), session().decisions()).size(); };
+    while (count() < poses) {
+        const std::size_t before = count();
+        if (before > 0 && !click("turn"))
+            return false;
+        if (!waitFor([&] { return count() > before; }))
+            return false;
+    }
+    return true;
+}
+
+bool DrivenWindow::useMakersIntrinsics() {
+    window.showStep(Step::Camera);
+    return click("makersIntrinsics") && session().decisions().camera.has_value();
+}
+
+bool DrivenWindow::scanHere() {
+    window.showStep(Step::Scan);
+    const std::size_t before = session().measured().views.size();
+    return click("scan") && waitFor([&] { return session().measured().views.size() > before; });
+}
+
+bool DrivenWindow::moveCameraOn() {
+    window.showStep(Step::Views);
+    return click("moveCamera") && waitFor([&] { return rig.isCameraAtRest(); });
+}
+
+void DrivenWindow::takePicture(const QString& name) {
+    const QString folder = qEnvironmentVariable("SKINCAL_SCREENSHOTS");
+    if (folder.isEmpty())
+        return;
+    for (int turn = 0; turn < 20; ++turn)
+        QCoreApplication::processEvents();
+    QImage picture = window.grab().toImage();
+    // Only the view itself can read what OpenGL drew.
+    BodyViewWidget& body = window.bodyView();
+    QPainter(&picture).drawImage(body.mapTo(&window, QPoint(0, 0)), body.grabPicture());
+    QDir().mkpath(folder);
+    picture.save(QDir(folder).filePath(name + QStringLiteral(".png")));
+}
+
+}  // namespace skincal

@@ -1,0 +1,40 @@
+#include "ui/window/rig_offers.h"
+
+#include <QCoreApplication>
+
+#include "core/rig/simulated_camera.h"
+#include "core/rig/simulated_skin.h"
+
+namespace skincal {
+namespace {
+
+QString tr(const char* text) {
+    return QCoreApplication::translate("RigOffers", text);
+}
+
+}  // namespace
+
+void offerRig(Workbench& workbench, SimulatedRig& rig) {
+    workbench.skinOffers.push_back({tr("Simulated arm"), tr("A skin on a simulated desk"),
+                                    [&rig] { return std::make_unique<SimulatedSkin>(rig); }});
+    workbench.cameraOffers.push_back({tr("Simulated webcam"), tr("It looks at the simulated desk"),
+                                      [&rig] { return std::make_unique<SimulatedCamera>(rig); }});
+    const auto poseOf = [&rig](ModuleId module) {
+        return rig.world().T_r_u.at(rig.world().skin.indexById().at(module));
+    };
+    RigHands hands;
+    hands.turnBody = [&rig, poseOf](ModuleId module, const Vector3d& up_u) {
+        rig.turnBody(poseOf(module).linear() * up_u);
+    };
+    hands.moveCamera = [&rig, poseOf](ModuleId module, const Isometry3d& T_u_v) {
+        rig.moveCamera(poseOf(module) * T_u_v);
+    };
+    hands.moveCameraOn = [&rig, place = std::size_t{0}]() mutable {
+        place = (place + 1) % rig.suggestedViews().size();
+        rig.moveCamera(rig.suggestedViews()[place]);
+    };
+    hands.intrinsics = rig.world().scenario.camera;
+    workbench.hands = std::move(hands);
+}
+
+}  // namespace skincal

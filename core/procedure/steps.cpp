@@ -69,6 +69,8 @@ StepState viewsState(const Progress& p) {
                 p.isSolving ? StepReason::Solving : StepReason::PatchesNotPlaced};
     if (p.modulesPlaced == 0 || p.patchesPlaced < p.patches)
         return {StepStatus::InProgress, StepReason::PatchesNotPlaced};
+    if (p.areViewsFew)
+        return {StepStatus::InProgress, StepReason::FewViews};
     return {StepStatus::Done, StepReason::None};
 }
 

@@ -34,6 +34,7 @@ enum class StepReason {
     NoIntrinsics,
     NoViews,
     PatchesNotPlaced,  ///< further views are asked for
+    FewViews,          ///< patches are seen from one side only, or modules not at all
     ModulesNotPlaced,
     NotTrusted,  ///< the body's verdict
     Changed,     ///< what was exported is not the newest body
@@ -64,6 +65,7 @@ struct Progress {
     std::size_t patches = 0;
     std::size_t patchesPlaced = 0;
     std::size_t modulesPlaced = 0;
+    bool areViewsFew = false;  ///< as the newest solution sees it
     bool isTrusted = false;  ///< the verdict is good or usable
     bool isExported = false;
     bool isExportNewest = false;

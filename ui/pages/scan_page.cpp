@@ -10,14 +10,17 @@
 
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/picture_view.h"
-#include "ui/widgets/theme.h"
 
 namespace skincal {
 namespace {
 
 using Phase = ScanRun::Phase;
 
-constexpr int kCrop_px = 108;  // on the screen
+constexpr int kCrop_px = 84;  // on the screen
+
+/// On a picture, which is dark whatever the theme.
+const QColor kUsed("#56c8ff");
+const QColor kSetAside("#ffb020");
 
 /// The first entry of the list of views: what the camera sees now.
 constexpr int kLive = 0;
@@ -62,6 +65,7 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     top->addWidget(start_);
     top->addWidget(pause_);
     top->addWidget(progress_, 1);
+    top->addStretch();
     progress_->setAccessibleName(tr("Progress of the scan"));
     body().addLayout(top);
     body().addWidget(status_);
@@ -97,7 +101,7 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     table_->setWordWrap(false);
     for (const int column : {DetectionModel::Module, DetectionModel::Residual, DetectionModel::Sigma})
         table_->setColumnWidth(column, 76);
-    table_->setColumnWidth(DetectionModel::State, 130);
+    table_->setColumnWidth(DetectionModel::State, 96);
     columns->addWidget(table_, 1);
     auto* side = new QVBoxLayout;
     auto* crops = new QHBoxLayout;
@@ -233,13 +237,11 @@ void ScanPage::showPicture() {
 void ScanPage::showMarks() {
     std::vector<PictureMark> marks;
     if (views_->currentIndex() > kLive) {
-        const Theme theme = Theme::current();
         for (const DetectionRow& row : presenter_.detections().rows()) {
             if (!row.pixel)
                 continue;
             const bool counts = row.state == DetectionRow::State::Used;
-            marks.push_back(
-                {QPointF(row.pixel->x(), row.pixel->y()), counts ? theme.good : theme.attention, row.module, !counts});
+            marks.push_back({QPointF(row.pixel->x(), row.pixel->y()), counts ? kUsed : kSetAside, row.module, !counts});
         }
     }
     picture_->setMarks(std::move(marks));

@@ -94,7 +94,7 @@ QVariant DetectionModel::data(const QModelIndex& index, int role) const {
     const auto number = [&](const std::optional<double>& value) -> QVariant {
         if (role == kSortRole)
             return value.value_or(-1);
-        return value ? QVariant(tr("%1 px").arg(*value, 0, 'f', 2)) : QVariant(tr("–"));
+        return value ? QVariant(tr("%1 px").arg(*value, 0, 'f', 3)) : QVariant(tr("–"));
     };
     if (role == Qt::ToolTipRole)
         return row.reason;

@@ -20,21 +20,31 @@ struct Neighbour {
 
 using Neighbours = std::vector<std::vector<Neighbour>>;
 
+/// Where nothing else lies yet. Before cables are known, patches that one joins fold onto each other.
+bool isFree(const std::map<std::size_t, Isometry3d>& placed, const Vector3d& centre, double reach) {
+    return std::none_of(placed.begin(), placed.end(),
+                        [&](const auto& other) { return (other.second.translation() - centre).norm() < reach; });
+}
+
 /// Places of one patch's modules, the first at the origin, breadth first; ports of neighbours coincide where the skin
-/// closes no loop that a table could not.
-std::map<std::size_t, Isometry3d> layPatch(const Skin& skin, const Neighbours& neighbours, std::size_t first) {
+/// closes no loop that a table could not. Modules that would lie on others are left for a drawing of their own.
+std::map<std::size_t, Isometry3d> layPatch(const Skin& skin, const Neighbours& neighbours, std::size_t first,
+                                           const std::vector<bool>& done) {
     std::map<std::size_t, Isometry3d> placed{{first, Isometry3d::Identity()}};
     std::deque<std::size_t> queue{first};
     while (!queue.empty()) {
         const std::size_t a = queue.front();
         queue.pop_front();
         for (const Neighbour& to : neighbours[a]) {
-            if (placed.contains(to.module))
+            if (placed.contains(to.module) || done[to.module])
                 continue;
             const Vector3d& port_a = skin.port(a, to.ownPort);
             const Vector3d& port_b = skin.port(to.module, to.otherPort);
             const Matrix3d R_a_b = flatNeighbourRotation(port_a, port_b);
-            placed[to.module] = placed[a] * makeIsometry(R_a_b, port_a - R_a_b * port_b);
+            const Isometry3d T = placed[a] * makeIsometry(R_a_b, port_a - R_a_b * port_b);
+            if (!isFree(placed, T.translation(), skin.templateOf(to.module).portRadius()))
+                continue;
+            placed[to.module] = T;
             queue.push_back(to.module);
         }
     }
@@ -117,7 +127,7 @@ FlatNetwork layOutFlat(const Skin& skin, const std::vector<JudgedLink>& links) {
             continue;
         const auto number = static_cast<unsigned>(patches.size());
         auto& patch = patches.emplace_back();
-        for (const auto& [u, T] : layPatch(skin, neighbours, first)) {
+        for (const auto& [u, T] : layPatch(skin, neighbours, first, done)) {
             done[u] = true;
             patch.push_back(flatModule(skin, u, number, T));
         }

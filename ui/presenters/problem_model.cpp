@@ -7,6 +7,14 @@ namespace {
 
 using Severity = Problem::Severity;
 
+/// Core's sentences begin in lower case: they also stand behind a colon.
+QString sentence(const std::string& text) {
+    QString result = QString::fromStdString(text);
+    if (!result.isEmpty())
+        result[0] = result[0].toUpper();
+    return result;
+}
+
 /// A camera that stands moves by less than this between two pictures: noise.
 constexpr double kMoved_px = 1.0;
 
@@ -73,11 +81,11 @@ Problem problemOf(const WiringFault& fault) {
 
 void addSolution(const Solution& solution, std::vector<Problem>& problems) {
     for (const Finding& finding : solution.body.quality.findings)
-        problems.push_back({Severity::Warning, stepOf(finding), QString::fromStdString(finding.text), finding.modules,
+        problems.push_back({Severity::Warning, stepOf(finding), sentence(finding.text), finding.modules,
                             finding.view.value_or(std::string()), finding.pose.value_or(-1)});
     for (const Shortfall& shortfall : solution.shortfalls)
-        problems.push_back({Severity::Note, stepOf(shortfall.kind), QString::fromStdString(shortfall.text),
-                            shortfall.modules, shortfall.views.empty() ? std::string() : shortfall.views.front()});
+        problems.push_back({Severity::Note, stepOf(shortfall.kind), sentence(shortfall.text), shortfall.modules,
+                            shortfall.views.empty() ? std::string() : shortfall.views.front()});
 }
 
 }  // namespace
@@ -146,7 +154,7 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
     if (notice_)
         problems.push_back(*notice_);
     if (connection_.state().phase == Connection::Phase::Lost)
-        problems.push_back({Severity::Error, Step::Connect, QString::fromStdString(connection_.state().why), {}, {}});
+        problems.push_back({Severity::Error, Step::Connect, sentence(connection_.state().why), {}, {}});
     if (!cameraFailure_.isEmpty())
         problems.push_back({Severity::Error, Step::Camera, cameraFailure_, {}, {}});
     if (scan_.state().phase == ScanRun::Phase::Failed)

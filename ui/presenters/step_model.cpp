@@ -49,6 +49,8 @@ QString sentenceOf(StepReason reason) {
             return StepModel::tr("scan a view first");
         case StepReason::PatchesNotPlaced:
             return StepModel::tr("some patches are not placed yet");
+        case StepReason::FewViews:
+            return StepModel::tr("look from further sides");
         case StepReason::ModulesNotPlaced:
             return StepModel::tr("some modules are not placed");
         case StepReason::NotTrusted:
@@ -76,7 +78,7 @@ StepModel::StepModel(Workbench& workbench, const ConnectPresenter& connection, c
         refresh();
     });
     connect(&scan, &ScanPresenter::pictureChanged, this, [this] {
-        if (isCameraLost_ && !scan_.picture().empty()) {
+        if (!scan_.picture().empty() && (isCameraLost_ || !hadPictures_)) {
             isCameraLost_ = false;
             refresh();
         }
@@ -136,8 +138,12 @@ Progress StepModel::progress() const {
                           [](const BodyPatch& patch) { return patch.T_body_patch.has_value(); }));
         p.modulesPlaced = solution->body.quality.modulesPlaced;
         p.isTrusted = solution->body.quality.trust != Trust::NotToBeTrusted;
-        p.arePosesAlike = std::any_of(solution->shortfalls.begin(), solution->shortfalls.end(),
-                                      [](const Shortfall& s) { return s.kind == Shortfall::Kind::PosesAlike; });
+        const auto lacks = [&](Shortfall::Kind kind) {
+            return std::any_of(solution->shortfalls.begin(), solution->shortfalls.end(),
+                               [&](const Shortfall& shortfall) { return shortfall.kind == kind; });
+        };
+        p.arePosesAlike = lacks(Shortfall::Kind::PosesAlike);
+        p.areViewsFew = lacks(Shortfall::Kind::FewViews) || lacks(Shortfall::Kind::ModulesUnseen);
         p.isExportNewest = exported_ == solution->revision && !session.isSolving();
     }
     p.isExported = exported_.has_value();
@@ -145,6 +151,7 @@ Progress StepModel::progress() const {
 }
 
 void StepModel::refresh() {
+    hadPictures_ = !scan_.picture().empty();
     const StepStates states = stepStates(progress());
     if (states == states_)
         return;

@@ -43,6 +43,7 @@ class StepModel : public QAbstractListModel {
     StepStates states_;
     std::optional<std::uint64_t> exported_;  ///< revision of the solution that was
     bool isCameraLost_ = false;
+    bool hadPictures_ = false;
 };
 
 }  // namespace skincal

@@ -84,7 +84,7 @@ void PictureView::paintEvent(QPaintEvent*) {
         }
         if (mark.expected)
             painter.drawLine(at, toWidget(*mark.expected));
-        if (isSelected || zoom_ > 2 || marks_.size() <= 60) {
+        if (isSelected || zoom_ > 1.5) {
             painter.setPen(mark.colour);
             painter.drawText(at + QPointF(radius + 2, -radius + 4), QString::number(mark.module.value));
         }

@@ -11,7 +11,6 @@
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
@@ -100,13 +99,8 @@ void MainWindow::buildPages() {
     auto* exportPage = new ExportPage(export_);
     pages_ = {connectPage, posePage, cameraPage, scanPage, viewsPage, resultPage, exportPage, nullptr};
     for (Page* page : pages_) {
-        if (page == nullptr)
-            continue;
-        auto* area = new QScrollArea;
-        area->setWidgetResizable(true);
-        area->setFrameShape(QFrame::NoFrame);
-        area->setWidget(page);
-        stack_->addWidget(area);
+        if (page != nullptr)
+            stack_->addWidget(page);
     }
     connect(connectPage, &ConnectPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
     connect(posePage, &PosePage::modulesSelected, this, &MainWindow::showModules);

@@ -9,6 +9,14 @@
 namespace skincal {
 namespace {
 
+QFont smaller(QFont font) {
+    if (font.pixelSize() > 0)
+        font.setPixelSize(font.pixelSize() - 1);
+    else
+        font.setPointSizeF(0.9 * font.pointSizeF());
+    return font;
+}
+
 void paintGround(QPainter& painter, const QStyleOptionViewItem& option, const Theme& theme) {
     if ((option.state & QStyle::State_Selected) != 0) {
         QColor ground = theme.accent;
@@ -67,8 +75,7 @@ void StepDelegate::paint(QPainter* painter, const QStyleOptionViewItem& option, 
     painter->drawText(QRectF(text.left(), reason.isEmpty() ? middle - 0.5 * high : middle - high, text.width(), high),
                       Qt::AlignLeft | Qt::AlignVCenter, index.data().toString());
     if (!reason.isEmpty()) {
-        QFont small = option.font;
-        small.setPointSizeF(0.9 * small.pointSizeF());
+        const QFont small = smaller(option.font);
         painter->setFont(small);
         painter->setPen(status == StepStatus::NeedsAttention ? theme.attention : theme.muted);
         painter->drawText(QRectF(text.left(), middle, text.width(), high), Qt::AlignLeft | Qt::AlignVCenter,

@@ -44,7 +44,10 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     driven.takePicture("4-scan");
 
     const auto patches = [&] { return driven.session().solution()->body.patches.size(); };
-    for (int view = 1; view < 12 && driven.patchesPlaced() < patches(); ++view) {
+    const auto isViewsDone = [&] {
+        return driven.steps().states()[static_cast<std::size_t>(Step::Views)].status == StepStatus::Done;
+    };
+    for (int view = 1; view < 10 && !isViewsDone(); ++view) {
         ASSERT_TRUE(driven.moveCameraOn());
         if (view == 2)
             driven.takePicture("5-views");
@@ -72,9 +75,6 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     EXPECT_EQ(difference.compared, driven.rig.world().skin.modules.size());
     EXPECT_LT(difference.positionRms, 1e-3);
     EXPECT_LT(difference.rotationRms, 1.5 * kDegree);
-    driven.window.setDark(false);
-    driven.window.showStep(Step::Result);
-    driven.takePicture("6-result-light");
 }
 
 }  // namespace

@@ -94,14 +94,17 @@ void DrivenWindow::takePicture(const QString& name) {
     const QString folder = qEnvironmentVariable("SKINCAL_SCREENSHOTS");
     if (folder.isEmpty())
         return;
-    for (int turn = 0; turn < 20; ++turn)
-        QCoreApplication::processEvents();
-    QImage picture = window.grab().toImage();
-    // Only the view itself can read what OpenGL drew.
-    BodyViewWidget& body = window.bodyView();
-    QPainter(&picture).drawImage(body.mapTo(&window, QPoint(0, 0)), body.grabPicture());
     QDir().mkpath(folder);
-    picture.save(QDir(folder).filePath(name + QStringLiteral(".png")));
+    for (const bool dark : {false, true}) {
+        window.setDark(dark);
+        for (int turn = 0; turn < 20; ++turn)
+            QCoreApplication::processEvents();
+        QImage picture = window.grab().toImage();
+        // Only the view itself can read what OpenGL drew.
+        BodyViewWidget& body = window.bodyView();
+        QPainter(&picture).drawImage(body.mapTo(&window, QPoint(0, 0)), body.grabPicture());
+        picture.save(QDir(folder).filePath(name + (dark ? QStringLiteral("-dark.png") : QStringLiteral(".png"))));
+    }
 }
 
 }  // namespace skincal

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "app/headless_display.h"
+#include "tests/ui/watchful_application.h"
 #include "ui/scene3d/scene_widget.h"
 
 int main(int argc, char** argv) {
@@ -23,7 +24,7 @@ int main(int argc, char** argv) {
     ::setenv("QT_SCALE_FACTOR", "1", 1);
     QSurfaceFormat::setDefaultFormat(skincal::SceneWidget::sceneFormat());
     QApplication::setStyle("fusion");
-    const QApplication application(argc, argv);
+    const skincal::WatchfulApplication application(argc, argv);
     QFont font("DejaVu Sans");
     font.setPixelSize(12);
     QApplication::setFont(font);

@@ -53,6 +53,9 @@ ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWid
     column->addWidget(links_, 1);
     auto* buttons = new QHBoxLayout;
     buttons->addWidget(mutedLabel(tr("Select a link to overrule how it was judged.")), 1);
+    links_->setObjectName(QStringLiteral("links"));
+    callCable_->setObjectName(QStringLiteral("callCable"));
+    callNeighbours_->setObjectName(QStringLiteral("callNeighbours"));
     callCable_->setToolTip(tr("The selected link joins modules that do not touch, whatever the data say"));
     callNeighbours_->setToolTip(tr("The selected link joins modules side by side, whatever the data say"));
     askData_->setToolTip(tr("Forget your word on the selected link"));

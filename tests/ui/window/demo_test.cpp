@@ -4,9 +4,11 @@
 
 #include <QLineEdit>
 #include <QTemporaryDir>
+#include <iostream>
 
 #include "core/estimation/compare.h"
 #include "core/formats/body_json.h"
+#include "tests/ui/watchful_application.h"
 #include "tests/ui/window/driven_window.h"
 
 namespace skincal {
@@ -75,6 +77,8 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     EXPECT_EQ(difference.compared, driven.rig.world().skin.modules.size());
     EXPECT_LT(difference.positionRms, 1e-3);
     EXPECT_LT(difference.rotationRms, 1.5 * kDegree);
+    const WatchfulApplication::Stall& stall = WatchfulApplication::instance().longest();
+    std::cout << "longest event: " << 1e3 * stall.seconds << " ms, " << stall.what << '\n';
 }
 
 }  // namespace

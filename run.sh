@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs skincal.
-#   ./run.sh          simulates a skin and calibrates it from end to end; results in out/
+#   ./run.sh          opens the window on a simulated arm; where there is no screen, simulates a skin and calibrates it
+#                     from end to end with results in out/
 #   ./run.sh ARGS     skincal ARGS
 set -euo pipefail
 top=$(cd "$(dirname "$0")" && pwd)
@@ -13,7 +14,11 @@ top=$(cd "$(dirname "$0")" && pwd)
   cd "$OLDPWD"
 } >&2
 
-if [ $# -eq 0 ]; then
-  exec "$top/build/release/bin/skincal" demo --output "$top/out"
+skincal="$top/build/release/bin/skincal"
+if [ $# -gt 0 ]; then
+  exec "$skincal" "$@"
 fi
-exec "$top/build/release/bin/skincal" "$@"
+if [ -n "${DISPLAY:-}" ]; then
+  exec "$skincal" --demo
+fi
+exec "$skincal" demo --output "$top/out"

@@ -1,10 +1,13 @@
 #include "app/window.h"
 
 #include <QApplication>
+#include <QDir>
+#include <QStandardPaths>
 #include <QStyleFactory>
 
 #include "app/command_line.h"
 #include "core/rig/simulated_rig.h"
+#include "core/session/session_keeper.h"
 #include "ui/scene3d/scene_widget.h"
 #include "ui/window/main_window.h"
 #include "ui/window/rig_offers.h"
@@ -26,6 +29,10 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
     MainWindow window(workbench);
     window.setDark(!options.light);
     window.show();
+    const QString kept =
+        QDir(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)).filePath(QStringLiteral("sessions"));
+    SessionKeeper keeper(workbench.session(), kept);
+    window.offerKept(keeper);
     if (options.recording)
         window.openRecording(QString::fromStdString(options.recording->string()));
     return QApplication::exec();

@@ -45,12 +45,19 @@ struct Recording {
     std::map<std::string, UnknownKeys> unknownOfTypes{};  ///< by name of the module type
 };
 
+enum class Completeness {
+    Whole,  ///< as recording.md asks
+    Begun,  ///< kept while it is being made: the camera may be missing as long as there is no view
+};
+
 /// Reads and checks a recording without loading its pictures (frame files must exist). Every defect that
 /// recording.md lists gives one error that names the file, the place and what was expected.
-[[nodiscard]] tl::expected<Recording, FileError> readRecording(const std::filesystem::path& directory);
+[[nodiscard]] tl::expected<Recording, FileError> readRecording(const std::filesystem::path& directory,
+                                                               Completeness completeness = Completeness::Whole);
 
 /// Writes recording.json, gravity.csv and (where a view has any) detections.csv. Pictures are written by
-/// writeFrame. Refuses a directory that already holds a recording unless `overwrite`.
+/// writeFrame. Refuses a directory that already holds a recording unless `overwrite`. A camera of no width is left out:
+/// what is written then is only begun. Throws std::logic_error where there are views without a camera.
 [[nodiscard]] tl::expected<void, FileError> writeRecording(const Recording& recording,
                                                            const std::filesystem::path& directory,
                                                            bool overwrite = false);

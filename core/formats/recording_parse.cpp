@@ -194,7 +194,8 @@ constexpr std::array<std::string_view, 11> kKeys{"format", "version",    "module
 
 }  // namespace
 
-tl::expected<Recording, FileError> parseRecordingJson(std::string_view text, const std::filesystem::path& file) {
+tl::expected<Recording, FileError> parseRecordingJson(std::string_view text, const std::filesystem::path& file,
+                                                      Completeness completeness) {
     try {
         const nlohmann::json json = parseJson(text, file);
         const JsonCursor root(json, file);
@@ -214,7 +215,10 @@ tl::expected<Recording, FileError> parseRecordingJson(std::string_view text, con
         recording.unknown = root.membersBut(kKeys);
         const ModuleIndex index = readModules(root, recording.skin);
         readLinks(root, recording.skin, index);
-        recording.camera = readCamera(root.at("camera"));
+        const bool isBegun = completeness == Completeness::Begun && root.holds("views") &&
+                             root.at("views").array(kMaxViews).empty() && !root.holds("camera");
+        if (!isBegun)
+            recording.camera = readCamera(root.at("camera"));
         readViews(root, recording, index);
         readDecisions(root, recording, index);
         recording.gravityFile = root.at("gravity").text();

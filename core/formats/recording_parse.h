@@ -33,7 +33,8 @@ inline constexpr double kMaxSigma = 1e6;
 
 /// Everything but gravity and detections, whose files it names.
 [[nodiscard]] tl::expected<Recording, FileError> parseRecordingJson(std::string_view text,
-                                                                    const std::filesystem::path& file);
+                                                                    const std::filesystem::path& file,
+                                                                    Completeness completeness = Completeness::Whole);
 
 /// Fills recording.gravity.
 [[nodiscard]] tl::expected<void, FileError> parseGravityCsv(std::string_view text, const std::filesystem::path& file,

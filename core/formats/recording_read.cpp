@@ -44,7 +44,7 @@ tl::expected<void, FileError> checkFrames(const fs::path& directory, const Recor
 
 }  // namespace
 
-tl::expected<Recording, FileError> readRecording(const fs::path& directory) {
+tl::expected<Recording, FileError> readRecording(const fs::path& directory, Completeness completeness) {
     const fs::path jsonFile = directory / "recording.json";
     std::error_code error;
     const fs::file_status status = fs::status(directory, error);
@@ -55,7 +55,7 @@ tl::expected<Recording, FileError> readRecording(const fs::path& directory) {
     const auto text = readFile(jsonFile, kMaxJsonBytes);
     if (!text)
         return tl::unexpected(text.error());
-    auto recording = parseRecordingJson(*text, jsonFile);
+    auto recording = parseRecordingJson(*text, jsonFile, completeness);
     if (!recording)
         return recording;
     const auto gravity = readMember(directory, recording->gravityFile, "gravity", kMaxCsvBytes);

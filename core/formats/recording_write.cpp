@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -92,7 +94,10 @@ tl::expected<void, FileError> writeRecording(const Recording& recording, const f
 
     Json json = skinToJson(recording);
     json["gravity"] = "gravity.csv";
-    json["camera"] = cameraToJson(recording.camera);
+    if (recording.camera.width > 0)
+        json["camera"] = cameraToJson(recording.camera);
+    else if (!recording.views.empty())
+        throw std::logic_error("a recording with views needs a camera");
     json["views"] = Json::array();
     std::string detections = "view,module,x,y,sigma\n";
     bool anyDetection = false;

@@ -167,17 +167,34 @@ void Session::open(const QString& directory) {
         });
 }
 
+void Session::setUnsaved() {
+    savedRevision_ = revision_ - 1;
+    emit modifiedChanged(true);
+}
+
 void Session::save(const QString& directory) {
+    write(directory, false);
+}
+
+void Session::saveCopy(const QString& directory) {
+    write(directory, true);
+}
+
+void Session::write(const QString& directory, bool isCopy) {
     [[maybe_unused]] const auto future =
         QtConcurrent::run(&files_, [self = QPointer<Session>(this), directory, measured = measured_,
-                                    decisions = decisions_, revision = revision_] {
+                                    decisions = decisions_, revision = revision_, isCopy] {
             const auto written = writeSession(measured, decisions, directory.toStdString());
             const QString why = written ? QString() : QString::fromStdString(written.error());
-            const auto deliver = [self, directory, why, revision] {
+            const auto deliver = [self, directory, why, revision, isCopy] {
                 if (!self)
                     return;
                 if (!why.isEmpty()) {
                     emit self->fileFailed(why);
+                    return;
+                }
+                if (isCopy) {
+                    emit self->copied(directory);
                     return;
                 }
                 self->setSaved(revision);

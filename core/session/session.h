@@ -53,8 +53,12 @@ class Session : public QObject {
 
     /// Reads a recording on another thread; opened() or fileFailed() follows.
     void open(const QString& directory);
+    /// What was opened has no place of its own yet.
+    void setUnsaved();
     /// Writes likewise; saved() or fileFailed() follows. What changes meanwhile is not in it.
     void save(const QString& directory);
+    /// The same beside what the operator saves: copied() or fileFailed() follows, and the document stays modified.
+    void saveCopy(const QString& directory);
 
     /// Whether there is anything that save() would write anew.
     [[nodiscard]] bool isModified() const { return revision_ != savedRevision_; }
@@ -71,11 +75,13 @@ class Session : public QObject {
     void modifiedChanged(bool modified);
     void opened(const QString& directory);
     void saved(const QString& directory);
+    void copied(const QString& directory);
     void fileFailed(const QString& why);
 
   private:
     friend class DecideCommand;
 
+    void write(const QString& directory, bool isCopy);
     void swapDecisions(Decisions& other);
     void setSaved(std::uint64_t revision);
     void changed(bool onlyGrew);

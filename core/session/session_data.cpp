@@ -86,7 +86,8 @@ Recording recordingOf(const Measured& measured, const Decisions& decisions) {
     if (decisions.camera)
         recording.camera = *decisions.camera;
     for (const ScannedView& view : measured.views) {
-        if (decisions.droppedViews.contains(view.name))
+        // Without a camera pictures mean nothing.
+        if (decisions.droppedViews.contains(view.name) || !decisions.camera)
             continue;
         RecordedView recorded{view.name, view.frames, {}};
         if (view.frames.empty())
@@ -94,7 +95,7 @@ Recording recordingOf(const Measured& measured, const Decisions& decisions) {
         recording.views.push_back(std::move(recorded));
     }
     for (const auto& [key, decision] : decisions.detections) {
-        if (!decisions.droppedViews.contains(key.view))
+        if (decisions.camera && !decisions.droppedViews.contains(key.view))
             recording.decisions.push_back(decision);
     }
     return recording;
@@ -113,7 +114,8 @@ OpenedRecording openedFrom(const Recording& recording) {
         opened.measured.views.push_back({view.name, view.frames, nullptr, {view.name, view.detections, {}}});
     for (const Decision& decision : recording.decisions)
         opened.decisions.detections[{decision.view, decision.module}] = decision;
-    opened.decisions.camera = recording.camera;
+    if (recording.camera.width > 0)
+        opened.decisions.camera = recording.camera;
     return opened;
 }
 

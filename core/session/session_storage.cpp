@@ -40,7 +40,7 @@ void nameFrames(ScannedView& view, std::size_t number) {
 
 tl::expected<OpenedRecording, std::string> readSession(const std::filesystem::path& directory,
                                                        const RunContext& context) {
-    const auto recording = readRecording(directory);
+    const auto recording = readRecording(directory, Completeness::Begun);
     if (!recording)
         return tl::unexpected(recording.error().message());
     OpenedRecording opened = openedFrom(*recording);

@@ -9,13 +9,14 @@
 
 namespace skincal {
 
-/// Reads a recording and decodes its pictures, which stay in memory. The error is a sentence; empty where cancelled.
+/// Reads a recording, or one that is only begun, and decodes its pictures, which stay in memory. The error is a
+/// sentence; empty where cancelled.
 [[nodiscard]] tl::expected<OpenedRecording, std::string> readSession(const std::filesystem::path& directory,
                                                                      const RunContext& context = {});
 
 /// Writes what was measured and decided as a recording: its pictures first, recording.json last and in one go, so that
-/// what is there before is whole until the new one is. Pictures that are there already stay. Needs Decisions::camera.
-/// The error is a sentence.
+/// what is there before is whole until the new one is. Pictures that are there already stay. Without Decisions::camera
+/// it is only begun (see Completeness). The error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> writeSession(const Measured& measured, const Decisions& decisions,
                                                            const std::filesystem::path& directory);
 

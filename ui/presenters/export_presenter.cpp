@@ -1,12 +1,23 @@
 #include "ui/presenters/export_presenter.h"
 
+#include <QDateTime>
+#include <QLocale>
+
 #include "core/formats/body_json.h"
 #include "core/formats/export_csv.h"
 #include "core/formats/export_ply.h"
 #include "core/formats/export_urdf.h"
 #include "core/formats/files.h"
+#include "ui/print/report.h"
 
 namespace skincal {
+namespace {
+
+QString now() {
+    return QLocale().toString(QDateTime::currentDateTime(), QLocale::LongFormat);
+}
+
+}  // namespace
 
 ExportPresenter::ExportPresenter(Workbench& workbench, QObject* parent) : QObject(parent), workbench_(workbench) {
     formats_ = {
@@ -24,6 +35,11 @@ ExportPresenter::ExportPresenter(Workbench& workbench, QObject* parent) : QObjec
         {tr("PLY mesh"), QStringLiteral(".ply"),
          tr("The outlines of all placed boards as faces with a colour per patch. Metres, body frame."),
          [](const BodyModel& body) { return exportPly(body); }},
+        {tr("Report (PDF)"), QStringLiteral(".pdf"),
+         tr("For people and files: verdict, reasons, figures, and a table of all modules. Millimetres, body frame."),
+         [](const BodyModel& body) { return reportPdf(body, now()).toStdString(); }},
+        {tr("Report (HTML)"), QStringLiteral(".html"), tr("The same for a browser."),
+         [](const BodyModel& body) { return reportHtml(body, now()).toStdString(); }},
     };
     connect(&workbench.session(), &Session::solutionChanged, this, &ExportPresenter::changed);
 }
@@ -36,7 +52,10 @@ const BodyModel* ExportPresenter::body() const {
 QString ExportPresenter::preview(std::size_t format, int lines) const {
     if (body() == nullptr)
         return {};
-    const QString text = QString::fromStdString(formats_.at(format).bytes(*body()));
+    const std::string bytes = formats_.at(format).bytes(*body());
+    if (bytes.starts_with("%PDF"))
+        return tr("%1 kB of pages for printing.").arg(bytes.size() / 1024);
+    const QString text = QString::fromStdString(bytes);
     qsizetype end = 0;
     for (int line = 0; line < lines && end >= 0; ++line)
         end = text.indexOf(u'\n', end) + 1 > 0 ? text.indexOf(u'\n', end) + 1 : -1;

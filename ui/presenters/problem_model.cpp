@@ -149,10 +149,25 @@ void ProblemModel::clearNotice() {
     }
 }
 
+void ProblemModel::setKept(const QString& directory, const QString& when) {
+    kept_.reset();
+    if (!directory.isEmpty()) {
+        kept_ = Problem{Severity::Note,
+                        Step::Connect,
+                        tr("Work of %1 was not saved: click here to go on with it").arg(when),
+                        {},
+                        {}};
+        kept_->directory = directory;
+    }
+    refresh();
+}
+
 void ProblemModel::collect(std::vector<Problem>& problems) const {
     Session& session = workbench_.session();
     if (notice_)
         problems.push_back(*notice_);
+    if (kept_)
+        problems.push_back(*kept_);
     if (connection_.state().phase == Connection::Phase::Lost)
         problems.push_back({Severity::Error, Step::Connect, sentence(connection_.state().why), {}, {}});
     if (!cameraFailure_.isEmpty())

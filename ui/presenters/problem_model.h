@@ -15,6 +15,7 @@ struct Problem {
     std::vector<ModuleId> modules;  ///< to point at in the 3D view
     std::string view;               ///< to open
     int pose = -1;                  ///< to select
+    QString directory{};            ///< of a session to open
 };
 
 /// Everything that is wrong at the moment, the gravest first.
@@ -33,6 +34,9 @@ class ProblemModel : public QAbstractListModel {
     /// A file that could not be read or written; until the next one or clearNotice().
     void setNotice(const QString& text, Step step);
     void clearNotice();
+    /// A session that was not saved; empty takes the offer back.
+    void setKept(const QString& directory, const QString& when);
+    [[nodiscard]] bool isOfferTaken() const { return !kept_.has_value(); }
 
   private:
     void refresh();
@@ -43,6 +47,7 @@ class ProblemModel : public QAbstractListModel {
     const ScanPresenter& scan_;
     std::vector<Problem> problems_;
     std::optional<Problem> notice_;
+    std::optional<Problem> kept_;
     QString cameraFailure_;
     std::map<std::string, double> moved_;  ///< px that the camera moved during a view's scan
 };

@@ -8,6 +8,7 @@
 #include <QFileDialog>
 #include <QLabel>
 #include <QListView>
+#include <QLocale>
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
@@ -73,7 +74,17 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
         problems_.clearNotice();
         statusBar()->showMessage(tr("Opened %1").arg(directory));
         file_ = directory;
+        if (kept_ && kept_->directory == directory) {
+            // It lies where it may go: it has no file of its own before it is saved.
+            file_.clear();
+            workbench_.session().setUnsaved();
+            problems_.setKept({}, {});
+        }
         showStep(steps_.next());
+    });
+    connect(&session, &Session::copied, this, [this] {
+        if (kept_ && workbench_.session().isModified() && problems_.isOfferTaken())
+            SessionKeeper::forget(*std::exchange(kept_, std::nullopt));
     });
     connect(&session, &Session::saved, this, [this](const QString& directory) {
         problems_.clearNotice();
@@ -309,6 +320,14 @@ void MainWindow::openRecording(const QString& directory) {
     workbench_.session().open(directory);
 }
 
+void MainWindow::offerKept(const SessionKeeper& keeper) {
+    const auto sessions = keeper.kept();
+    if (sessions.empty())
+        return;
+    kept_ = sessions.front();
+    problems_.setKept(kept_->directory, QLocale().toString(kept_->time, QLocale::ShortFormat));
+}
+
 void MainWindow::save(bool elsewhere) {
     Session& session = workbench_.session();
     if (!session.decisions().camera) {
@@ -357,6 +376,10 @@ void MainWindow::refresh() {
 
 void MainWindow::jumpTo(int row) {
     const Problem problem = problems_.problemAt(row);
+    if (!problem.directory.isEmpty()) {
+        openRecording(problem.directory);
+        return;
+    }
     showStep(problem.step);
     if (!problem.view.empty())
         scan_.showView(problem.view);

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 
+#include "core/session/session_keeper.h"
 #include "ui/presenters/export_presenter.h"
 #include "ui/presenters/pose_presenter.h"
 #include "ui/presenters/problem_model.h"
@@ -35,6 +36,8 @@ class MainWindow : public QMainWindow {
     void setDark(bool dark);
     /// A recording from a file; a complaint becomes a problem.
     void openRecording(const QString& directory);
+    /// Offers what an earlier run left unsaved, the newest of it.
+    void offerKept(const SessionKeeper& keeper);
 
     [[nodiscard]] BodyViewWidget& bodyView() { return *body_; }
     [[nodiscard]] StepModel& steps() { return steps_; }
@@ -78,6 +81,7 @@ class MainWindow : public QMainWindow {
     QProgressBar* busy_ = nullptr;
     QAction* dark_ = nullptr;
     QString file_;
+    std::optional<KeptSession> kept_;  ///< that was offered
 };
 
 }  // namespace skincal

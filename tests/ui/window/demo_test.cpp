@@ -51,7 +51,7 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     };
     for (int view = 1; view < 10 && !isViewsDone(); ++view) {
         ASSERT_TRUE(driven.moveCameraOn());
-        if (view == 2)
+        if (view == 1)
             driven.takePicture("5-views");
         ASSERT_TRUE(driven.scanHere()) << "view " << view;
         ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));

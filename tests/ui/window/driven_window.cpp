@@ -87,6 +87,9 @@ bool DrivenWindow::scanHere() {
 
 bool DrivenWindow::moveCameraOn() {
     window.showStep(Step::Views);
+    // Its advice comes after the body; what can be pressed is not in its way.
+    if (!waitFor([&] { return session().guidance() != nullptr; }))
+        return false;
     return click("moveCamera") && waitFor([&] { return rig.isCameraAtRest(); });
 }
 

@@ -1,0 +1,63 @@
+// Nothing is lost: what nobody saved is there again when the program is started anew.
+
+#include <gtest/gtest.h>
+
+#include <QListView>
+#include <QTemporaryDir>
+
+#include "core/session/session_keeper.h"
+#include "tests/ui/window/driven_window.h"
+
+namespace skincal {
+namespace {
+
+TEST(Keeper, WhatWasNotSavedIsOfferedAndGoesOnWhereItEnded) {
+    const QTemporaryDir folder;
+    std::vector<GravityReading> before;
+    {
+        DrivenWindow driven;
+        SessionKeeper keeper(driven.session(), folder.path());
+        EXPECT_TRUE(keeper.kept().empty());
+        ASSERT_TRUE(driven.connectSkin());
+        ASSERT_TRUE(driven.capturePoses(3));
+        EXPECT_TRUE(keeper.kept().empty()) << "a running program's own is no remnant";
+        before = driven.session().measured().gravity;
+    }
+    DrivenWindow driven;
+    SessionKeeper keeper(driven.session(), folder.path());
+    ASSERT_EQ(keeper.kept().size(), 1U);
+    driven.window.offerKept(keeper);
+    auto* list = driven.find<QListView>("problems");
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualRect(list->model()->index(0, 0)).center());
+    ASSERT_TRUE(driven.waitFor([&] { return !driven.session().measured().skin.modules.empty(); }));
+    const auto& after = driven.session().measured().gravity;
+    ASSERT_EQ(after.size(), before.size());
+    for (std::size_t i = 0; i < after.size(); ++i)
+        EXPECT_EQ(after[i].acceleration, before[i].acceleration) << "though no camera was known";
+    EXPECT_TRUE(driven.session().isModified()) << "it still has no file of its own";
+    ASSERT_TRUE(driven.waitFor([&] { return keeper.kept().empty(); })) << "once the new program has it";
+    EXPECT_TRUE(QDir(keeper.directory()).exists());
+}
+
+TEST(Keeper, WhatWasSavedIsNotKept) {
+    const QTemporaryDir folder;
+    const QTemporaryDir target;
+    DrivenWindow driven;
+    SessionKeeper keeper(driven.session(), folder.path());
+    ASSERT_TRUE(driven.connectSkin());
+    ASSERT_TRUE(driven.capturePoses(3));
+    ASSERT_TRUE(driven.useMakersIntrinsics());
+    ASSERT_TRUE(driven.scanHere());
+    ASSERT_TRUE(driven.waitFor([&] { return QDir(keeper.directory()).exists(QStringLiteral("recording.json")); }));
+    const QString directory = target.filePath("mine.skinrec");
+    driven.session().save(directory);
+    ASSERT_TRUE(driven.waitFor([&] { return !driven.session().isModified(); }));
+    EXPECT_FALSE(QDir(keeper.directory()).exists());
+    const auto recording = readRecording(directory.toStdString());
+    ASSERT_TRUE(recording) << recording.error().message();
+    EXPECT_EQ(recording->views.size(), 1U);
+    EXPECT_FALSE(recording->views.front().frames.empty());
+}
+
+}  // namespace
+}  // namespace skincal

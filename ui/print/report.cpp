@@ -1,0 +1,181 @@
+#include "ui/print/report.h"
+
+#include <QAbstractTextDocumentLayout>
+#include <QBuffer>
+#include <QCoreApplication>
+#include <QPainter>
+#include <QPdfWriter>
+#include <QTextDocument>
+#include <cmath>
+
+namespace skincal {
+namespace {
+
+QString tr(const char* text) {
+    return QCoreApplication::translate("Report", text);
+}
+
+QString escaped(const std::string& text) {
+    return QString::fromStdString(text).toHtmlEscaped();
+}
+
+QString row(const QStringList& cells, const QString& tag = QStringLiteral("td")) {
+    QString html = QStringLiteral("<tr>");
+    for (const QString& cell : cells)
+        html += QStringLiteral("<%1>%2</%1>").arg(tag, cell);
+    return html + QStringLiteral("</tr>\n");
+}
+
+QString table(const QStringList& heads, const QString& rows) {
+    return QStringLiteral("<table border=\"1\" cellspacing=\"0\" cellpadding=\"3\">\n") +
+           (heads.isEmpty() ? QString() : row(heads, QStringLiteral("th"))) + rows + QStringLiteral("</table>\n");
+}
+
+QString heading(const QString& text) {
+    return QStringLiteral("<h2>%1</h2>\n").arg(text);
+}
+
+QString list(const std::vector<std::string>& texts) {
+    QString html = QStringLiteral("<ul>\n");
+    for (const std::string& text : texts)
+        html += QStringLiteral("<li>%1</li>\n").arg(escaped(text));
+    return html + QStringLiteral("</ul>\n");
+}
+
+QString millimetres(double metres) {
+    return QString::number(1e3 * metres, 'f', 2);
+}
+
+QString origin(const BodyGenerator& generator) {
+    QString rows = row({tr("Program"), escaped(generator.program + " " + generator.version)});
+    rows += row({tr("Method"), escaped(generator.method)});
+    for (const auto& [name, value] : generator.options)
+        rows += row({escaped(name), escaped(value)});
+    for (const auto& [file, digest] : generator.recording_sha256)
+        rows += row({escaped(file), QStringLiteral("SHA-256 ") + escaped(digest)});
+    return table({}, rows);
+}
+
+QString figures(const BodyQuality& quality) {
+    QString rows = row({tr("Modules placed"), tr("%1 of %2").arg(quality.modulesPlaced).arg(quality.modulesTotal)});
+    const auto add = [&](const QString& name, const std::optional<double>& value, double factor, const QString& unit) {
+        if (value)
+            rows += row({name, QStringLiteral("%1 %2").arg(factor * *value, 0, 'g', 3).arg(unit)});
+    };
+    add(tr("Spots from where the body has them, rms"), quality.residual_rms_px, 1, tr("px"));
+    add(tr("Ports of neighbours apart, rms"), quality.link_mismatch_rms, 1e3, tr("mm"));
+    add(tr("Ports of neighbours apart, widest"), quality.link_mismatch_max, 1e3, tr("mm"));
+    add(tr("Gravity, rms"), quality.gravity_residual_rms, 1, tr("m/s²"));
+    return table({}, rows);
+}
+
+QString patches(const BodyModel& body) {
+    QString rows;
+    for (const BodyPatch& patch : body.patches)
+        rows +=
+            row({QString::number(patch.id.value), QString::number(patch.origin.value),
+                 QString::number(patch.modules.size()), QString::number(patch.views.size()), escaped(patch.status)});
+    return table({tr("Patch"), tr("Origin"), tr("Modules"), tr("Views"), tr("Status")}, rows);
+}
+
+QString views(const BodyModel& body) {
+    QString rows;
+    for (const BodyView& view : body.views) {
+        int used = 0;
+        for (const BodyObservation& observation : view.observations)
+            used += observation.verdict == ObservationVerdict::Used ? 1 : 0;
+        rows += row({escaped(view.name), QString::number(used),
+                     view.residual_rms_px ? QString::number(*view.residual_rms_px, 'f', 3) : tr("–"),
+                     escaped(view.status)});
+    }
+    return table({tr("View"), tr("Detections used"), tr("Residual, px"), tr("Status")}, rows);
+}
+
+QString modules(const BodyModel& body) {
+    QString rows;
+    for (const BodyModule& module : body.modules) {
+        QStringList cells{QString::number(module.id.value), escaped(module.type),
+                          module.patch ? QString::number(module.patch->value) : tr("–")};
+        if (module.T_body_module) {
+            const Vector3d p = module.T_body_module->translation();
+            cells << millimetres(p.x()) << millimetres(p.y()) << millimetres(p.z());
+        } else {
+            cells << tr("–") << tr("–") << tr("–");
+        }
+        const auto& covariance = module.covariance;
+        cells << (covariance ? millimetres(std::sqrt(covariance->bottomRightCorner<3, 3>().trace() / 3)) : tr("–"))
+              << (covariance
+                      ? QString::number(std::sqrt(covariance->topLeftCorner<3, 3>().trace() / 3) / kDegree, 'f', 2)
+                      : tr("–"))
+              << (!module.T_body_module ? escaped(module.status)
+                  : module.seen         ? tr("pictures")
+                                        : tr("gravity and links"));
+        rows += row(cells);
+    }
+    return table({tr("Module"), tr("Type"), tr("Patch"), tr("x, mm"), tr("y, mm"), tr("z, mm"), tr("σ, mm"), tr("σ, °"),
+                  tr("Rests on")},
+                 rows);
+}
+
+}  // namespace
+
+QString reportHtml(const BodyModel& body, const QString& when) {
+    std::vector<std::string> reasons = body.quality.warnings;
+    reasons.insert(reasons.end(), body.quality.missing.begin(), body.quality.missing.end());
+    QString html = QStringLiteral(
+                       "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>%1</title>\n"
+                       "<style>body { font-family: sans-serif; margin: 2em; } table { border-collapse: "
+                       "collapse; } th { text-align: left; }</style></head><body>\n")
+                       .arg(tr("Calibration of a robot skin"));
+    html += QStringLiteral("<h1>%1</h1>\n<p>%2</p>\n").arg(tr("Calibration of a robot skin"), when.toHtmlEscaped());
+    html += QStringLiteral("<p><b>%1</b></p>\n")
+                .arg(tr("Verdict: %1").arg(QString::fromUtf8(name(body.quality.trust).data())));
+    html += reasons.empty() ? QStringLiteral("<p>%1</p>\n").arg(tr("Nothing is missing, and nothing disagrees."))
+                            : list(reasons);
+    html += heading(tr("Made by")) + origin(body.generator);
+    html += heading(tr("Quality")) + figures(body.quality);
+    html += heading(tr("Patches")) + patches(body) + heading(tr("Views")) + views(body);
+    html += heading(tr("Modules")) +
+            QStringLiteral("<p>%1</p>\n")
+                .arg(tr("Positions in the body frame (%1). σ is one standard deviation per axis.")
+                         .arg(escaped(body.body_frame))) +
+            modules(body);
+    return html + QStringLiteral("</body></html>\n");
+}
+
+QByteArray reportPdf(const BodyModel& body, const QString& when) {
+    QByteArray bytes;
+    QBuffer buffer(&bytes);
+    buffer.open(QIODevice::WriteOnly);
+    QPdfWriter writer(&buffer);
+    writer.setPageSize(QPageSize(QPageSize::A4));
+    writer.setPageMargins(QMarginsF(15, 15, 15, 18), QPageLayout::Millimeter);
+    writer.setTitle(tr("Calibration of a robot skin"));
+    writer.setCreator(QStringLiteral("SkinCal"));
+    QTextDocument document;
+    QFont font(QStringLiteral("sans-serif"));
+    font.setPointSize(9);
+    document.setDefaultFont(font);
+    document.documentLayout()->setPaintDevice(&writer);
+    document.setHtml(reportHtml(body, when));
+    document.setDocumentMargin(0);
+    document.setPageSize(QSizeF(writer.width(), writer.height()));
+    QPainter painter(&writer);
+    for (int page = 0; page < document.pageCount(); ++page) {
+        if (page > 0)
+            writer.newPage();
+        painter.save();
+        painter.translate(0, -static_cast<double>(page) * writer.height());
+        document.drawContents(&painter,
+                              QRectF(0, static_cast<double>(page) * writer.height(), writer.width(), writer.height()));
+        painter.restore();
+        painter.setFont(font);
+        const double line = writer.logicalDpiY() / 6.0;
+        painter.drawText(QRectF(0, writer.height() + 0.2 * line, writer.width(), line), Qt::AlignRight,
+                         tr("%1 of %2").arg(page + 1).arg(document.pageCount()));
+    }
+    painter.end();
+    return bytes;
+}
+
+}  // namespace skincal

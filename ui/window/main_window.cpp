@@ -15,6 +15,7 @@
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
+#include <QStyle>
 #include <QToolBar>
 #include <QVBoxLayout>
 
@@ -356,6 +357,7 @@ void MainWindow::showModules(const std::vector<ModuleId>& modules) {
 }
 
 void MainWindow::refresh() {
+    problemList_->setVisible(problems_.rowCount() > 0);
     body_->setGuideCamera(step() == Step::Views ? views_.target() : std::nullopt);
     const std::size_t row = indexOf(step());
     back_->setVisible(row > 0);
@@ -369,7 +371,8 @@ void MainWindow::refresh() {
         const bool isPrimary = status == StepStatus::Done;
         if (next_->property("primary").toBool() != isPrimary) {
             next_->setProperty("primary", isPrimary);
-            next_->setStyleSheet(next_->styleSheet());  // polishes it anew
+            next_->style()->unpolish(next_);
+            next_->style()->polish(next_);
         }
     }
 }

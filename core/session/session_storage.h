@@ -14,7 +14,8 @@ namespace skincal {
                                                                      const RunContext& context = {});
 
 /// Writes what was measured and decided as a recording: its pictures first, recording.json last and in one go, so that
-/// what is there before is whole until the new one is. Pictures that are there already stay. Needs Decisions::camera.
+/// what is there before is whole until the new one is. A picture that is there already is not written again, and none
+/// is ever overwritten: a view that was scanned anew gets another folder. Fails where there is no Decisions::camera.
 /// The error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> writeSession(const Measured& measured, const Decisions& decisions,
                                                            const std::filesystem::path& directory);

@@ -31,11 +31,16 @@ Session::Session(QObject* parent) : QObject(parent), undoStack_(this), solver_(t
         solution_ = std::move(solution);
         emit solutionChanged();
     });
-    connect(&solver_, &Solver::failed, this, [this](const QString& why, std::uint64_t) {
+    connect(&solver_, &Solver::failed, this, [this](const QString& why, std::uint64_t revision) {
+        if (revision != revision_)
+            return;  // nobody can tell yet what the newest data give
         failure_ = why;
         emit solutionChanged();
     });
     connect(&solver_, &Solver::guided, this, [this](std::shared_ptr<const Guidance> guidance) {
+        // It may have been on its way when the data changed.
+        if (guidance->revision != revision_)
+            return;
         guidance_ = std::move(guidance);
         emit guidanceChanged();
     });
@@ -71,13 +76,13 @@ void Session::adoptSkin(Skin skin) {
         decisions_.detections.clear();
         decisions_.droppedPoses.clear();
         decisions_.droppedViews.clear();
+        measured_.unknown.clear();
+        measured_.unknownOfTypes.clear();
         undoStack_.clear();
-        solver_.reset();
-        solution_.reset();
-        guidance_.reset();
-        emit solutionChanged();
+        forgetSolution();
         emit posesChanged();
         emit viewsChanged();
+        emit decisionsChanged();
     }
     emit skinChanged();
     changed(false);
@@ -110,10 +115,12 @@ std::string Session::addView(ScannedView view) {
 }
 
 void Session::replaceView(ScannedView view) {
-    for (ScannedView& existing : measured_.views) {
-        if (existing.name == view.name)
-            existing = std::move(view);
-    }
+    const auto existing = std::find_if(measured_.views.begin(), measured_.views.end(),
+                                       [&](const ScannedView& other) { return other.name == view.name; });
+    if (existing == measured_.views.end())
+        return;
+    view.decoded.name = view.name;
+    *existing = std::move(view);
     emit viewsChanged();
     changed(false);
 }
@@ -130,15 +137,11 @@ void Session::load(OpenedRecording recording) {
     measured_ = std::move(recording.measured);
     decisions_ = std::move(recording.decisions);
     undoStack_.clear();
-    solver_.reset();
-    solution_.reset();
-    guidance_.reset();
-    failure_.clear();
+    forgetSolution();
     emit skinChanged();
     emit posesChanged();
     emit viewsChanged();
     emit decisionsChanged();
-    emit solutionChanged();
     changed(false);
     setSaved(revision_);
 }
@@ -181,6 +184,11 @@ void Session::saveCopy(const QString& directory) {
 }
 
 void Session::write(const QString& directory, bool isCopy) {
+    if (!isCopy && !decisions_.camera) {
+        const QString why = tr("The camera's intrinsics are not known yet, and a recording can't be without.");
+        QMetaObject::invokeMethod(this, [this, why] { emit fileFailed(why); }, Qt::QueuedConnection);
+        return;
+    }
     [[maybe_unused]] const auto future =
         QtConcurrent::run(&files_, [self = QPointer<Session>(this), directory, measured = measured_,
                                     decisions = decisions_, revision = revision_, isCopy] {
@@ -226,11 +234,23 @@ void Session::changed(bool onlyGrew) {
         QTimer::singleShot(0, this, &Session::solveSoon);
 }
 
+void Session::forgetSolution() {
+    solver_.reset();
+    solution_.reset();
+    guidance_.reset();
+    failure_.clear();
+    emit solutionChanged();
+}
+
 void Session::solveSoon() {
     isSolveDue_ = false;
-    const bool onlyGrew = std::exchange(onlyGrew_, true);
-    if (measured_.skin.modules.empty() || posesOf(measured_, decisions_).empty())
+    if (measured_.skin.modules.empty() || posesOf(measured_, decisions_).empty()) {
+        // A body of what was taken away would be made up.
+        if (solution_ || !failure_.isEmpty() || isSolving())
+            forgetSolution();
         return;
+    }
+    const bool onlyGrew = std::exchange(onlyGrew_, true);
     solver_.request(std::make_shared<const Measurements>(measurementsOf(measured_, decisions_)), revision_, onlyGrew);
 }
 

@@ -25,11 +25,13 @@ class Session : public QObject {
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     [[nodiscard]] QUndoStack& undoStack() { return undoStack_; }
 
-    /// The newest body, not always of the newest data (see isSolving); null before the first.
+    /// The newest body, not always of the newest data (see isSolving); null before the first, and where no pose counts.
     [[nodiscard]] const std::shared_ptr<const Solution>& solution() const { return solution_; }
     /// What to measure next; null while unknown.
     [[nodiscard]] const std::shared_ptr<const Guidance>& guidance() const { return guidance_; }
     [[nodiscard]] bool isSolving() const { return solver_.isBusy(); }
+    /// See Solver::setQuick.
+    void setQuick(double seconds) { solver_.setQuick(seconds); }
     /// Why the newest data gave no body; empty where they did.
     [[nodiscard]] const QString& failure() const { return failure_; }
 
@@ -42,7 +44,7 @@ class Session : public QObject {
     int addPose(std::vector<GravityReading> readings);
     /// @return the new view's name.
     std::string addView(ScannedView view);
-    /// In the place of one that is there: scanned again.
+    /// In the place of one of the same name: scanned again. Nothing where there is none.
     void replaceView(ScannedView view);
 
     /// Everything else is undoable. `text` is what the menu calls it.
@@ -85,6 +87,7 @@ class Session : public QObject {
     void swapDecisions(Decisions& other);
     void setSaved(std::uint64_t revision);
     void changed(bool onlyGrew);
+    void forgetSolution();
     void solveSoon();
 
     Measured measured_;

@@ -98,6 +98,8 @@ Recording recordingOf(const Measured& measured, const Decisions& decisions) {
         if (decisions.camera && !decisions.droppedViews.contains(key.view))
             recording.decisions.push_back(decision);
     }
+    recording.unknown = measured.unknown;
+    recording.unknownOfTypes = measured.unknownOfTypes;
     return recording;
 }
 
@@ -110,6 +112,8 @@ OpenedRecording openedFrom(const Recording& recording) {
         link.decided.reset();
     }
     opened.measured.gravity = recording.gravity;
+    opened.measured.unknown = recording.unknown;
+    opened.measured.unknownOfTypes = recording.unknownOfTypes;
     for (const RecordedView& view : recording.views)
         opened.measured.views.push_back({view.name, view.frames, nullptr, {view.name, view.detections, {}}});
     for (const Decision& decision : recording.decisions)

@@ -29,6 +29,8 @@ struct Measured {
     Skin skin;  ///< without the operator's word on links
     std::vector<GravityReading> gravity;
     std::vector<ScannedView> views;
+    UnknownKeys unknown{};  ///< of the recording that was read, see Recording
+    std::map<std::string, UnknownKeys> unknownOfTypes{};
 };
 
 /// A link whichever end it is seen from.

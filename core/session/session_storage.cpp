@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <opencv2/core.hpp>
+
 #include "core/vision/decoder.h"
 
 namespace skincal {
@@ -28,12 +30,42 @@ tl::expected<void, std::string> decodePictures(ScannedView& view, const std::fil
     return {};
 }
 
-/// Names for pictures that were taken here and have none yet; no two views share one.
-void nameFrames(ScannedView& view, std::size_t number) {
+bool isThere(const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::exists(file, error);
+}
+
+/// Whether that very picture is there, to the last bit.
+bool holds(const std::filesystem::path& directory, const FrameInfo& frame, const cv::Mat& picture) {
+    CameraModel size;
+    size.width = picture.cols;
+    size.height = picture.rows;
+    const auto there = loadFrame(directory, frame, size);
+    return there && there->type() == picture.type() && cv::norm(*there, picture, cv::NORM_INF) == 0;
+}
+
+/// Whether a view's files hold its own pictures or are not there yet. Files of an earlier scan of the view, or of
+/// another recording, may be in their place.
+bool hasPlace(const ScannedView& view, const std::filesystem::path& directory) {
     for (std::size_t k = 0; k < view.frames.size(); ++k) {
-        if (view.frames[k].file.empty())
-            view.frames[k].file = fmt::format("views/{:03}/{:05}.png", number, k);
+        const FrameInfo& frame = view.frames[k];
+        if (frame.file.empty() || (isThere(directory / frame.file) && !holds(directory, frame, (*view.pictures)[k])))
+            return false;
     }
+    return true;
+}
+
+/// Names files for a view's pictures, the old ones where these will do. No two views share a folder.
+void findPlace(ScannedView& view, const std::filesystem::path& directory, std::set<std::string>& taken) {
+    for (std::size_t number = 0; !hasPlace(view, directory); ++number) {
+        const std::string folder = fmt::format("views/{:03}", number);
+        if (taken.contains(folder))
+            continue;
+        for (std::size_t k = 0; k < view.frames.size(); ++k)
+            view.frames[k].file = fmt::format("{}/{:05}.png", folder, k);
+    }
+    for (const FrameInfo& frame : view.frames)
+        taken.insert(std::filesystem::path(frame.file).parent_path().string());
 }
 
 }  // namespace
@@ -66,17 +98,12 @@ tl::expected<void, std::string> writeSession(const Measured& measured, const Dec
         for (const FrameInfo& frame : view.frames)
             taken.insert(std::filesystem::path(frame.file).parent_path().string());
     }
-    std::size_t number = 0;
     for (ScannedView& view : named.views) {
-        while (taken.contains(fmt::format("views/{:03}", number)))
-            ++number;
-        nameFrames(view, number);
-        if (!view.frames.empty())
-            taken.insert(std::filesystem::path(view.frames.front().file).parent_path().string());
-        if (!view.pictures)
+        if (!view.pictures || !decisions.camera || decisions.droppedViews.contains(view.name))
             continue;
+        findPlace(view, directory, taken);
         for (std::size_t k = 0; k < view.frames.size(); ++k) {
-            if (std::filesystem::exists(directory / view.frames[k].file))
+            if (isThere(directory / view.frames[k].file))
                 continue;
             if (const auto written = writeFrame(directory, view.frames[k].file, (*view.pictures)[k]); !written)
                 return tl::unexpected(written.error().message());

@@ -15,8 +15,9 @@ namespace skincal {
                                                                      const RunContext& context = {});
 
 /// Writes what was measured and decided as a recording: its pictures first, recording.json last and in one go, so that
-/// what is there before is whole until the new one is. Pictures that are there already stay. Without Decisions::camera
-/// it is only begun (see Completeness). The error is a sentence.
+/// what is there before is whole until the new one is. A picture that is there already is not written again, and none
+/// is ever overwritten: a view that was scanned anew gets another folder. Without Decisions::camera it is only begun
+/// (see Completeness). The error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> writeSession(const Measured& measured, const Decisions& decisions,
                                                            const std::filesystem::path& directory);
 

@@ -7,8 +7,6 @@
 namespace skincal {
 namespace {
 
-/// Below this a body is solved from the data alone every time: what was taken out before gets its chance again.
-constexpr double kQuick_s = 1.5;
 constexpr std::chrono::milliseconds kBetweenReports{100};
 
 /// Reports of the worker's reach the solver's thread, not more than ten a second.
@@ -67,7 +65,7 @@ void Solver::startNext() {
     const Request request = *std::exchange(next_, std::nullopt);
     cancelled_ = std::make_shared<std::atomic<bool>>(false);
     const std::uint64_t run = ++run_;
-    const bool isSlow = last_ && last_->seconds > kQuick_s;
+    const bool isSlow = last_ && last_->seconds > quick_s_;
     auto start = request.mayUpdate && isSlow ? last_ : nullptr;
     auto work = [self = QPointer<Solver>(this), context = contextOf(this, cancelled_), request, run,
                  start = std::move(start)] {

@@ -20,6 +20,9 @@ class Solver : public QObject {
 
     /// @param mayUpdate  whether the measurements only grew since the last solution was asked for.
     void request(std::shared_ptr<const Measurements> measurements, std::uint64_t revision, bool mayUpdate);
+    /// A body that took longer than this is updated rather than solved anew, where it may be: in a solution from the
+    /// data alone, what was taken out before gets its chance again. 1.5 s at first.
+    void setQuick(double seconds) { quick_s_ = seconds; }
     /// Nothing is computed any more, and what was is forgotten.
     void reset();
     [[nodiscard]] bool isBusy() const { return isBusy_; }
@@ -46,6 +49,7 @@ class Solver : public QObject {
     std::optional<Request> next_;
     std::shared_ptr<const Solution> last_;
     bool grewSinceLast_ = true;
+    double quick_s_ = 1.5;
     std::uint64_t run_ = 0;
     bool isBusy_ = false;
 };

@@ -71,7 +71,7 @@ void ConnectPresenter::disconnectSkin() {
 }
 
 void ConnectPresenter::blink(ModuleId module) {
-    if (!workbench_.isSkinReady())
+    if (!workbench_.isSkinReady() || workbench_.isScanning())
         return;
     blinks_ = module;
     blinkSteps_ = kBlinkSteps;
@@ -80,7 +80,7 @@ void ConnectPresenter::blink(ModuleId module) {
 }
 
 void ConnectPresenter::blinkStep() {
-    if (blinkSteps_ == 0 || !workbench_.isSkinReady()) {
+    if (blinkSteps_ == 0 || !workbench_.isSkinReady() || workbench_.isScanning()) {
         blinkTimer_.stop();
         return;
     }
@@ -92,6 +92,7 @@ void ConnectPresenter::blinkStep() {
 void ConnectPresenter::attachDevice() {
     SkinDevice* device = workbench_.skin();
     state_ = {};
+    found_.clear();
     timer_.stop();
     connect(device, &SkinDevice::opened, this, [this] { handle(connection::Opened{}); });
     connect(device, &SkinDevice::closed, this, [this] { handle(connection::Closed{}); });

@@ -36,7 +36,7 @@ class ConnectPresenter : public QObject {
     void chooseDevice(int offer);
     void connectSkin();
     void disconnectSkin();
-    /// Its LED goes on and off a few times.
+    /// Its LED goes on and off a few times; not during a scan.
     void blink(ModuleId module);
 
   signals:

@@ -1,6 +1,7 @@
 #include "ui/presenters/link_model.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/estimation/skin_layout.h"
 
@@ -11,16 +12,24 @@ QString portName(ModuleId module, int port) {
     return LinkModel::tr("%1, port %2").arg(module.value).arg(port);
 }
 
+std::set<LinkKey> keysOf(const Skin& skin) {
+    std::set<LinkKey> keys;
+    for (const Link& link : skin.links)
+        keys.insert(LinkKey::of(link));
+    return keys;
+}
+
 std::vector<JudgedLink> judgedLinks(Session& session) {
     const Decisions& decisions = session.decisions();
+    // The operator's word counts at once, the next solution only says so, too.
     const auto judged = [&](const Link& link, LinkKind kind, const std::string& reason) {
-        const bool decided = decisions.links.contains(LinkKey::of(link));
-        return JudgedLink{link, kind, QString::fromStdString(reason), decided};
+        const auto word = decisions.links.find(LinkKey::of(link));
+        const bool decided = word != decisions.links.end();
+        return JudgedLink{link, decided ? word->second : kind, QString::fromStdString(reason), decided};
     };
     std::vector<JudgedLink> links;
     // A solution of an older network would name links that are gone.
-    if (session.solution() &&
-        session.solution()->measurements->skin.links.size() == session.measured().skin.links.size()) {
+    if (session.solution() && keysOf(session.solution()->measurements->skin) == keysOf(session.measured().skin)) {
         for (const BodyLink& link : session.solution()->body.links)
             links.push_back(judged(link.link, link.kind, link.reason));
         return links;

@@ -3,6 +3,13 @@
 #include <QtConcurrent/QtConcurrentRun>
 
 namespace skincal {
+namespace {
+
+bool needsCamera(const ScanRun& run) {
+    return run.isRunning() || run.phase == ScanRun::Phase::Paused;
+}
+
+}  // namespace
 
 ScanPresenter::ScanPresenter(Workbench& workbench, QObject* parent)
     : QObject(parent), workbench_(workbench), detections_(workbench) {
@@ -17,7 +24,10 @@ ScanPresenter::ScanPresenter(Workbench& workbench, QObject* parent)
     });
     connect(&workbench.session(), &Session::decisionsChanged, this, &ScanPresenter::stateChanged);
     const auto countPictures = [this] { picturesOfAScan_ = codedScan(modules(), 0).size(); };
-    connect(&workbench.session(), &Session::skinChanged, this, countPictures);
+    connect(&workbench.session(), &Session::skinChanged, this, [this, countPictures] {
+        handle(scan_run::Failed{tr("the skin is another one now").toStdString()});
+        countPictures();
+    });
     countPictures();
     connect(&watcher_, &QFutureWatcherBase::finished, this, &ScanPresenter::decodingFinished);
     if (workbench.camera() != nullptr)
@@ -39,7 +49,7 @@ QString ScanPresenter::obstacle() const {
         return tr("No camera is chosen.");
     if (!workbench_.session().decisions().camera)
         return tr("The camera's intrinsics are not known.");
-    if (newest_.image.empty())
+    if (newest_.image.empty() || !isPictureNew_)
         return tr("The camera gives no pictures yet.");
     const CameraModel& camera = *workbench_.session().decisions().camera;
     if (newest_.image.cols != camera.width || newest_.image.rows != camera.height)
@@ -115,26 +125,36 @@ void ScanPresenter::setDropped(const std::string& view, bool dropped) {
 void ScanPresenter::setActive(bool active) {
     isActive_ = active;
     FrameSource* camera = workbench_.camera();
-    const bool needed = active || state_.isRunning() || state_.phase == ScanRun::Phase::Paused;
+    const bool needed = active || needsCamera(state_);
     if (camera == nullptr || needed == isCameraRunning_)
         return;
     isCameraRunning_ = needed;
+    // Its time would pass for the present.
+    isPictureNew_ = false;
     needed ? camera->start() : camera->stop();
+    emit stateChanged();
 }
 
 void ScanPresenter::attachCamera() {
     FrameSource* camera = workbench_.camera();
     isCameraRunning_ = false;
+    isPictureNew_ = false;
     newest_ = {};
+    handle(scan_run::Failed{tr("another camera was chosen").toStdString()});
     connect(camera, &FrameSource::frameArrived, this, [this](const CameraFrame& frame) {
         newest_ = frame;
+        // What comes after the camera was stopped is late.
+        const bool isFirst = isCameraRunning_ && !std::exchange(isPictureNew_, true);
         handle(scan_run::PictureTaken{frame.time});
         emit pictureChanged();
+        if (isFirst)
+            emit stateChanged();
     });
     connect(camera, &FrameSource::failed, this, [this](const QString& why) {
-        isCameraRunning_ = false;
         newest_ = {};
+        // While it counts as running, so that the end of the scan does not start it again.
         handle(scan_run::Failed{why.toStdString()});
+        isCameraRunning_ = false;
         emit cameraFailed(why);
         emit pictureChanged();
     });
@@ -156,11 +176,12 @@ void ScanPresenter::handle(const scan_run::Event& event) {
     const ScanRun before = state_;
     const auto [state, effects] = step(state_, event);
     state_ = state;
+    workbench_.setScanning(state_.isRunning());
     for (const scan_run::Effect& effect : effects)
         act(effect);
     if (!(before == state_)) {
         emit stateChanged();
-        if (before.isRunning() && !state_.isRunning())
+        if (needsCamera(before) != needsCamera(state_))
             setActive(isActive_);
     }
 }

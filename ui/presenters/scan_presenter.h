@@ -85,6 +85,7 @@ class ScanPresenter : public QObject {
     std::size_t picturesOfAScan_ = 0;
     bool isActive_ = false;
     bool isCameraRunning_ = false;
+    bool isPictureNew_ = false;  ///< taken since the camera was started last
 };
 
 }  // namespace skincal

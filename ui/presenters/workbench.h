@@ -58,6 +58,10 @@ class Workbench : public QObject {
     [[nodiscard]] bool isSkinReady() const { return isSkinReady_; }
     void setSkinReady(bool ready);
 
+    /// A scan has the LEDs: whoever else lights one spoils its pictures.
+    [[nodiscard]] bool isScanning() const { return isScanning_; }
+    void setScanning(bool scanning) { isScanning_ = scanning; }
+
   signals:
     void skinChosen();
     void cameraChosen();
@@ -70,6 +74,7 @@ class Workbench : public QObject {
     int chosenSkin_ = -1;
     int chosenCamera_ = -1;
     bool isSkinReady_ = false;
+    bool isScanning_ = false;
 };
 
 }  // namespace skincal

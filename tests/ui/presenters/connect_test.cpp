@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <QSignalSpy>
+
+#include "tests/ui/presenters/desk.h"
+#include "tests/unit/skin/grids.h"
+
+namespace skincal {
+namespace {
+
+using test::Desk;
+using test::looseModules;
+using test::waitFor;
+using Phase = Connection::Phase;
+
+TEST(ConnectPresenter, LeadsFromADeviceToANetwork) {
+    Desk desk;
+    EXPECT_EQ(desk.connection.state().phase, Phase::Disconnected);
+    ASSERT_TRUE(desk.connectSkin());
+    EXPECT_EQ(desk.connection.state().phase, Phase::Connected);
+    EXPECT_EQ(desk.connection.found().size(), desk.rig.world().skin.modules.size());
+    EXPECT_EQ(desk.session().measured().skin.links.size(), desk.rig.world().skin.links.size());
+    EXPECT_GT(desk.connection.links().rowCount(), 0);
+    // Explored again it is the same skin, and what was measured stays.
+    ASSERT_TRUE(desk.capturePoses(1));
+    desk.connection.connectSkin();
+    EXPECT_EQ(desk.connection.state().phase, Phase::Exploring);
+    EXPECT_FALSE(desk.workbench.isSkinReady());
+    ASSERT_TRUE(waitFor([&] { return desk.workbench.isSkinReady(); }));
+    EXPECT_EQ(posesOf(desk.session().measured(), {}).size(), 1U);
+    EXPECT_EQ(desk.connection.found().size(), desk.rig.world().skin.modules.size());
+}
+
+TEST(ConnectPresenter, MayBeDisconnectedAtAnyMoment) {
+    for (std::size_t modules = 0; modules <= 14; modules += 7) {
+        Desk desk;
+        desk.connection.connectSkin();
+        ASSERT_TRUE(waitFor([&] { return desk.connection.found().size() >= modules; }));
+        desk.connection.disconnectSkin();
+        EXPECT_EQ(desk.connection.state().phase, Phase::Disconnected);
+        EXPECT_FALSE(desk.workbench.isSkinReady());
+        // The echo of the first connection does not end the second.
+        ASSERT_TRUE(desk.connectSkin());
+        EXPECT_EQ(desk.connection.found().size(), desk.rig.world().skin.modules.size());
+    }
+}
+
+TEST(ConnectPresenter, SaysThatTheSkinWasUnplugged) {
+    for (const bool whileExploring : {true, false}) {
+        Desk desk;
+        desk.connection.connectSkin();
+        ASSERT_TRUE(waitFor(
+            [&] { return whileExploring ? desk.connection.found().size() > 3 : desk.workbench.isSkinReady(); }));
+        desk.rig.pullSkin();
+        ASSERT_TRUE(waitFor([&] { return desk.connection.state().phase == Phase::Lost; }));
+        EXPECT_EQ(desk.connection.state().why, "the skin was unplugged");
+        EXPECT_FALSE(desk.workbench.isSkinReady());
+        EXPECT_EQ(desk.problems.problemAt(0).severity, Problem::Severity::Error);
+        desk.connection.connectSkin();
+        ASSERT_TRUE(waitFor([&] { return desk.connection.state().phase == Phase::Lost; }));
+        EXPECT_FALSE(desk.connection.state().why.empty());
+        desk.rig.plugSkin();
+        ASSERT_TRUE(desk.connectSkin());
+    }
+}
+
+TEST(ConnectPresenter, AnotherDeviceBeginsAnew) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    desk.connection.chooseDevice(1);
+    EXPECT_EQ(desk.connection.state().phase, Phase::Disconnected);
+    EXPECT_FALSE(desk.workbench.isSkinReady());
+    EXPECT_TRUE(desk.connection.found().empty());
+    ASSERT_TRUE(desk.connectSkin());
+}
+
+TEST(ConnectPresenter, BlinksOnAndOffAndLeavesTheLedDark) {
+    Desk desk;
+    const ModuleId module = desk.rig.world().skin.modules.front().id;
+    std::vector<bool> steps;
+    QObject::connect(&desk.connection, &ConnectPresenter::blinking, &desk.connection, [&](ModuleId who, bool on) {
+        EXPECT_EQ(who, module);
+        EXPECT_EQ(desk.isDark(), !on);
+        steps.push_back(on);
+    });
+    desk.connection.blink(module);
+    EXPECT_TRUE(steps.empty()) << "there is no skin yet";
+    ASSERT_TRUE(desk.connectSkin());
+    desk.connection.blink(module);
+    ASSERT_TRUE(waitFor([&] { return steps.size() == 8; }));
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        EXPECT_EQ(steps[i], i % 2 == 0);
+    EXPECT_TRUE(desk.isDark());
+}
+
+TEST(WiringFaults, NamesWhatIsWrongAndNothingElse) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed)
+        EXPECT_TRUE(wiringFaults(buildWorld(*findScenario("cylinder"), seed).skin).empty());
+    const ModuleTemplate hexagon = paperHexagon();
+    Skin skin = looseModules(hexagon, 4);
+    const auto id = [&](std::size_t u) { return skin.modules[u].id; };
+    const auto linked = [&](std::size_t a, int a_port, std::size_t b, int b_port) {
+        return Link{id(a), a_port, id(b), b_port, std::nullopt};
+    };
+    skin.links = {linked(0, 0, 1, 0), linked(1, 0, 0, 0), linked(1, 1, 2, 1)};
+    auto faults = wiringFaults(skin);
+    ASSERT_EQ(faults.size(), 1U) << "a link that both ends report is one link";
+    EXPECT_EQ(faults[0].kind, WiringFault::Kind::NoLink);
+    EXPECT_EQ(faults[0].modules, std::vector<ModuleId>{id(3)});
+    skin.links.push_back(linked(3, 2, 1, 1));
+    faults = wiringFaults(skin);
+    ASSERT_EQ(faults.size(), 1U);
+    EXPECT_EQ(faults[0].kind, WiringFault::Kind::DoublyWired);
+    EXPECT_EQ(faults[0].modules, (std::vector<ModuleId>{id(1), id(2), id(3)}));
+    skin.links.back() = linked(3, 2, 2, 0);
+    skin.links.push_back(linked(3, 1, 3, 0));
+    faults = wiringFaults(skin);
+    ASSERT_EQ(faults.size(), 1U);
+    EXPECT_EQ(faults[0].kind, WiringFault::Kind::SelfLink);
+    EXPECT_TRUE(wiringFaults(looseModules(hexagon, 1)).empty()) << "one module alone needs no link";
+}
+
+}  // namespace
+}  // namespace skincal

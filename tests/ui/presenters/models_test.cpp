@@ -1,0 +1,146 @@
+// A whole calibration, with a tester on every model that checks each of its signals.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <QAbstractItemModelTester>
+#include <QSignalSpy>
+
+#include "core/formats/body_json.h"
+#include "tests/ui/presenters/desk.h"
+#include "tests/unit/formats/temporary_directory.h"
+
+namespace skincal {
+namespace {
+
+using test::Desk;
+using test::waitFor;
+
+TEST(Models, AreSoundDuringAWholeCalibration) {
+    Desk desk;
+    constexpr auto kFatal = QAbstractItemModelTester::FailureReportingMode::Fatal;
+    const QAbstractItemModelTester links(&desk.connection.links(), kFatal);
+    const QAbstractItemModelTester poses(&desk.pose.poses(), kFatal);
+    const QAbstractItemModelTester detections(&desk.scan.detections(), kFatal);
+    const QAbstractItemModelTester steps(&desk.steps, kFatal);
+    const QAbstractItemModelTester problems(&desk.problems, kFatal);
+    EXPECT_TRUE(desk.exporter.preview(0, 5).isEmpty());
+    EXPECT_FALSE(desk.exporter.write(0, "nowhere").isEmpty());
+
+    ASSERT_TRUE(desk.connectSkin());
+    ASSERT_TRUE(desk.capturePoses(6));
+    EXPECT_EQ(desk.pose.poses().rowCount(), 6);
+    ASSERT_TRUE(desk.startCamera());
+    EXPECT_FALSE(desk.views.instruction().isEmpty());
+    const auto placed = [&] { return desk.session().solution()->body.quality.modulesPlaced; };
+    for (int view = 0; view < 6; ++view) {
+        ASSERT_TRUE(desk.scanHere());
+        ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+        EXPECT_EQ(desk.scan.detections().rowCount(), static_cast<int>(desk.rig.world().skin.modules.size()));
+        EXPECT_EQ(desk.views.views().size(), static_cast<std::size_t>(view) + 1);
+        EXPECT_FALSE(desk.views.instruction().isEmpty());
+        EXPECT_EQ(desk.views.target().has_value(), !desk.views.reason().isEmpty());
+        if (placed() == desk.rig.world().skin.modules.size() && view > 1)
+            break;
+        ASSERT_TRUE(desk.moveCamera());
+    }
+    EXPECT_EQ(placed(), desk.rig.world().skin.modules.size());
+    for (const PatchState& patch : desk.views.patches()) {
+        EXPECT_TRUE(patch.isPlaced);
+        EXPECT_FALSE(patch.views.empty());
+    }
+
+    // Decisions, and all of them taken back.
+    const auto kindOf = [&](const LinkKey& key) {
+        for (const JudgedLink& link : desk.connection.links().links()) {
+            if (LinkKey::of(link.link) == key)
+                return link;
+        }
+        return JudgedLink{};
+    };
+    const int lastLink = desk.connection.links().rowCount() - 1;
+    const LinkKey key = LinkKey::of(desk.connection.links().links().back().link);
+    ASSERT_EQ(kindOf(key).kind, LinkKind::Adjacent);
+    desk.connection.links().overrule(lastLink, LinkKind::Cable);
+    EXPECT_EQ(kindOf(key).kind, LinkKind::Cable) << "at once, not with the next solution";
+    EXPECT_TRUE(kindOf(key).isOperatorsWord);
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_EQ(kindOf(key).kind, LinkKind::Cable);
+    desk.pose.poses().setDropped(0, true);
+    const ModuleId module = desk.session().findView(desk.scan.shownView())->decoded.found.front().module;
+    desk.scan.detections().reject({module}, "a lamp");
+    const auto row = [&] {
+        return desk.scan.detections().rows()[static_cast<std::size_t>(desk.scan.detections().rowOf(module).value())];
+    };
+    EXPECT_EQ(row().state, DetectionRow::State::Rejected);
+    EXPECT_EQ(row().reason, "a lamp");
+    desk.scan.setDropped(desk.scan.shownView(), true);
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_TRUE(desk.views.views().back().isDropped);
+    while (desk.session().undoStack().index() > 1)
+        desk.session().undoStack().undo();
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_NE(row().state, DetectionRow::State::Rejected);
+    EXPECT_FALSE(kindOf(key).isOperatorsWord);
+    desk.problems.setNotice("a file could not be read", Step::Export);
+    EXPECT_EQ(desk.problems.problemAt(0).text, "a file could not be read");
+    desk.problems.clearNotice();
+
+    // Written files are what the preview began with.
+    const test::TemporaryDirectory directory;
+    const QSignalSpy written(&desk.exporter, &ExportPresenter::written);
+    for (std::size_t format = 0; format < desk.exporter.formats().size(); ++format) {
+        const auto file = directory / ("body" + desk.exporter.formats()[format].suffix.toStdString());
+        EXPECT_EQ(desk.exporter.write(format, file), "");
+        const std::string text = test::readText(file);
+        EXPECT_FALSE(text.empty());
+        for (const int lines : {1, 7}) {
+            QString preview = desk.exporter.preview(format, lines);
+            EXPECT_EQ(preview.count('\n'), lines);
+            EXPECT_TRUE(preview.endsWith(QStringLiteral("…")));
+            preview.chop(1);
+            EXPECT_EQ(text.substr(0, preview.toStdString().size()), preview.toStdString());
+        }
+        EXPECT_EQ(desk.exporter.preview(format, 1'000'000).toStdString(), text);
+        // A file where a folder should be: nothing is written.
+        EXPECT_NE(desk.exporter.write(format, file / "body"), "");
+        EXPECT_EQ(test::readText(file), text);
+    }
+    EXPECT_EQ(static_cast<std::size_t>(written.count()), desk.exporter.formats().size());
+    const auto read = readBody(directory / "body.body.json");
+    ASSERT_TRUE(read) << read.error().message();
+    EXPECT_EQ(read->modules.size(), desk.rig.world().skin.modules.size());
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(directory.path()))
+        ++files;
+    EXPECT_EQ(files, desk.exporter.formats().size()) << "no half-written file is left";
+
+    // Unplugged, and another skin's file opened.
+    desk.rig.pullSkin();
+    desk.rig.pullCamera();
+    ASSERT_TRUE(waitFor([&] { return desk.connection.state().phase == Connection::Phase::Lost; }));
+    desk.session().load({});
+    EXPECT_EQ(desk.connection.links().rowCount() + desk.pose.poses().rowCount(), 0);
+    EXPECT_EQ(desk.scan.detections().rowCount(), 0);
+    EXPECT_EQ(desk.exporter.body(), nullptr);
+}
+
+TEST(LinkModel, ShowsNoLinksOfAnOlderNetwork) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    ASSERT_TRUE(desk.capturePoses(3));
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    Skin skin = desk.session().measured().skin;
+    // As many links as before, one of them another.
+    std::swap(skin.links.front(), skin.links.back());
+    skin.links.back().a_port = (skin.links.back().a_port + 1) % 3;
+    desk.session().adoptSkin(skin);
+    std::set<LinkKey> expected;
+    for (const Link& link : skin.links)
+        expected.insert(LinkKey::of(link));
+    for (const JudgedLink& link : desk.connection.links().links())
+        EXPECT_TRUE(expected.contains(LinkKey::of(link.link)));
+}
+
+}  // namespace
+}  // namespace skincal

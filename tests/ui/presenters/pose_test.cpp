@@ -1,0 +1,144 @@
+#include <gtest/gtest.h>
+
+#include <QSignalSpy>
+
+#include "tests/ui/presenters/desk.h"
+
+namespace skincal {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Desk;
+using test::waitFor;
+using Phase = PoseCapture::Phase;
+
+TEST(PosePresenter, CapturesByItselfAtRestAndOnlyThen) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    int captured = 0;
+    QObject::connect(&desk.pose, &PosePresenter::captured, &desk.pose, [&](int pose) {
+        EXPECT_EQ(pose, captured++);
+        EXPECT_TRUE(desk.rig.isBodyAtRest());
+    });
+    desk.pose.setActive(true);
+    ASSERT_TRUE(waitFor([&] { return captured == 1; }));
+    EXPECT_EQ(desk.pose.restDone(), 1);
+    // The same pose is not captured twice.
+    pass(desk.rig.clock(), 3s);
+    EXPECT_EQ(captured, 1);
+    EXPECT_EQ(desk.pose.state().phase, Phase::Captured);
+    for (int next = 2; next <= 4; ++next) {
+        const auto target = desk.pose.target();
+        ASSERT_TRUE(target);
+        desk.pose.turnToTarget();
+        pass(desk.rig.clock(), 300ms);
+        EXPECT_EQ(desk.pose.state().phase, Phase::Moving);
+        EXPECT_GT(desk.pose.movement().value_or(0), desk.pose.restsBelow());
+        EXPECT_EQ(captured, next - 1);
+        ASSERT_TRUE(waitFor([&] { return captured == next; }));
+        EXPECT_EQ(desk.pose.covered().size(), static_cast<std::size_t>(next));
+        EXPECT_LT(std::acos(std::min(1.0, desk.pose.covered().back().dot(*target))), 10 * kDegree)
+            << "the hands turned it to where it should go";
+    }
+}
+
+TEST(PosePresenter, RefusesToCaptureABodyThatMoves) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    desk.pose.setAutomatic(false);
+    const QSignalSpy refused(&desk.pose, &PosePresenter::refused);
+    const QSignalSpy captured(&desk.pose, &PosePresenter::captured);
+    desk.pose.captureNow();
+    EXPECT_EQ(captured.count(), 0) << "nobody watches";
+    desk.pose.setActive(true);
+    pass(desk.rig.clock(), 3s);
+    EXPECT_EQ(captured.count(), 0) << "not by itself";
+    desk.pose.captureNow();
+    EXPECT_EQ(captured.count(), 1);
+    desk.rig.turnBody(Vector3d(1, 0, 0));
+    pass(desk.rig.clock(), 500ms);
+    desk.pose.captureNow();
+    EXPECT_EQ(refused.count(), 1);
+    EXPECT_EQ(captured.count(), 1);
+    pass(desk.rig.clock(), 4s);
+    desk.pose.captureNow();
+    EXPECT_EQ(captured.count(), 2);
+}
+
+TEST(PosePresenter, IsSilentWhereNobodyLooks) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    const QSignalSpy sampled(&desk.pose, &PosePresenter::sampled);
+    pass(desk.rig.clock(), 1s);
+    EXPECT_EQ(sampled.count(), 0);
+    desk.pose.setActive(true);
+    pass(desk.rig.clock(), 1s);
+    EXPECT_GT(sampled.count(), 10);
+    EXPECT_LE(sampled.count(), 31);
+    desk.pose.setActive(false);
+    EXPECT_EQ(desk.pose.state().phase, Phase::Off);
+    EXPECT_FALSE(desk.pose.up());
+    const qsizetype before = sampled.count();
+    pass(desk.rig.clock(), 1s);
+    EXPECT_EQ(sampled.count(), before);
+}
+
+TEST(PosePresenter, GoesOnAfterTheSkinWasUnplugged) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    ASSERT_TRUE(desk.capturePoses(1));
+    desk.pose.setActive(true);
+    pass(desk.rig.clock(), 1s);
+    desk.rig.pullSkin();
+    ASSERT_TRUE(waitFor([&] { return !desk.workbench.isSkinReady(); }));
+    EXPECT_EQ(desk.pose.state().phase, Phase::Off);
+    desk.rig.plugSkin();
+    ASSERT_TRUE(desk.connectSkin());
+    EXPECT_NE(desk.pose.state().phase, Phase::Off);
+    ASSERT_TRUE(desk.capturePoses(2));
+}
+
+TEST(PosePresenter, DroppedPosesLeaveTheForecast) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    ASSERT_TRUE(desk.capturePoses(4));
+    const auto forecast = desk.pose.forecast();
+    const auto covered = desk.pose.covered();
+    ASSERT_EQ(forecast.size(), 4U);
+    EXPECT_FALSE(forecast.front()) << "one pose fixes nothing";
+    ASSERT_TRUE(forecast[2] && forecast[3]);
+    EXPECT_LT(*forecast[3], *forecast[2]);
+    desk.pose.poses().setDropped(3, true);
+    EXPECT_TRUE(desk.pose.poses().isDropped(3));
+    ASSERT_EQ(desk.pose.forecast().size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(desk.pose.forecast()[i], forecast[i]);
+    EXPECT_EQ(desk.pose.covered(), std::vector<Vector3d>(covered.begin(), covered.begin() + 3));
+    desk.session().undoStack().undo();
+    EXPECT_EQ(desk.pose.forecast(), forecast);
+}
+
+TEST(FarthestDirection, IsFartherFromAllThanAnyOther) {
+    EXPECT_FALSE(farthestDirection({}));
+    const auto nearest = [](const Vector3d& direction, const std::vector<Vector3d>& covered) {
+        double angle = 4;
+        for (const Vector3d& other : covered)
+            angle = std::min(angle, std::acos(std::clamp(direction.dot(other), -1.0, 1.0)));
+        return angle;
+    };
+    Random random(1);
+    for (int i = 0; i < 200; ++i) {
+        std::vector<Vector3d> covered;
+        for (std::size_t n = 0; n <= random.index(12); ++n)
+            covered.push_back(random.direction());
+        const auto best = farthestDirection(covered);
+        ASSERT_TRUE(best);
+        EXPECT_NEAR(best->norm(), 1, 1e-12);
+        EXPECT_EQ(*best, *farthestDirection(covered));
+        for (int k = 0; k < 50; ++k)
+            EXPECT_GT(nearest(*best, covered) + 15 * kDegree, nearest(random.direction(), covered));
+    }
+}
+
+}  // namespace
+}  // namespace skincal

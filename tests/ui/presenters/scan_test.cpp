@@ -1,0 +1,240 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <QSignalSpy>
+
+#include "tests/ui/presenters/desk.h"
+
+namespace skincal {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Desk;
+using test::waitFor;
+using Phase = ScanRun::Phase;
+
+/// Calls `what` the first time that the scan is there, from inside the signal: nothing is missed.
+void when(Desk& desk, Phase phase, std::size_t frame, std::function<void()> what) {
+    auto done = std::make_shared<bool>(false);
+    QObject::connect(&desk.scan, &ScanPresenter::stateChanged, &desk.scan, [&desk, phase, frame, what, done] {
+        const ScanRun& run = desk.scan.state();
+        if (!*done && run.phase == phase && run.next >= frame) {
+            *done = true;
+            what();
+        }
+    });
+}
+
+void expectSpotsNearTruth(Desk& desk, const ScannedView& view) {
+    const World& world = desk.rig.world();
+    const auto index = world.skin.indexById();
+    Visibility any;
+    any.maxAngle = 89 * kDegree;
+    EXPECT_GT(view.decoded.found.size(), 5U);
+    for (const LedDetection& led : view.decoded.found) {
+        const auto truth = visiblePixel(world, desk.rig.cameraPose(), 0, index.at(led.module), any);
+        ASSERT_TRUE(truth);
+        EXPECT_LT((led.pixel - *truth).norm(), 0.2);
+    }
+}
+
+TEST(ScanPresenter, TellsWhatIsInTheWay) {
+    Desk desk;
+    EXPECT_THAT(desk.scan.obstacle().toStdString(), testing::HasSubstr("skin is not connected"));
+    ASSERT_TRUE(desk.connectSkin());
+    EXPECT_THAT(desk.scan.obstacle().toStdString(), testing::HasSubstr("No camera"));
+    desk.workbench.chooseCamera(0);
+    EXPECT_THAT(desk.scan.obstacle().toStdString(), testing::HasSubstr("intrinsics"));
+    CameraModel camera = desk.rig.world().scenario.camera;
+    camera.width = 640;
+    desk.session().decide("intrinsics", [&](Decisions& decisions) { decisions.camera = camera; });
+    EXPECT_THAT(desk.scan.obstacle().toStdString(), testing::HasSubstr("no pictures yet"));
+    desk.scan.start();
+    EXPECT_EQ(desk.scan.state().phase, Phase::Idle);
+    desk.scan.setActive(true);
+    ASSERT_TRUE(waitFor([&] { return !desk.scan.picture().empty(); }));
+    EXPECT_THAT(desk.scan.obstacle().toStdString(), testing::HasSubstr("640"));
+    desk.session().undoStack().undo();
+    ASSERT_TRUE(desk.startCamera());
+    EXPECT_EQ(desk.scan.obstacle(), "");
+    // An old picture's time must not pass for the present.
+    desk.scan.setActive(false);
+    EXPECT_FALSE(desk.scan.picture().empty());
+    EXPECT_THAT(desk.scan.obstacle().toStdString(), testing::HasSubstr("no pictures yet"));
+    desk.scan.setActive(true);
+    ASSERT_TRUE(waitFor([&] { return desk.scan.obstacle().isEmpty(); }));
+}
+
+TEST(ScanPresenter, AScanIsAViewWhoseSpotsAreWhereTheyAre) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    const QSignalSpy scanned(&desk.scan, &ScanPresenter::scanned);
+    for (int view = 0; view < 2; ++view) {
+        ASSERT_TRUE(desk.scanHere());
+        EXPECT_EQ(desk.scan.state().phase, Phase::Done);
+        EXPECT_EQ(desk.scan.done(), 1);
+        const ScannedView& last = desk.session().measured().views.back();
+        EXPECT_EQ(desk.scan.shownView(), last.name);
+        EXPECT_EQ(last.pictures->size(), desk.scan.picturesOfAScan());
+        EXPECT_LT(scanned.back().at(1).toDouble(), 0.5) << "the camera stood";
+        expectSpotsNearTruth(desk, last);
+        ASSERT_TRUE(desk.moveCamera());
+    }
+    EXPECT_TRUE(desk.isDark());
+}
+
+TEST(ScanPresenter, CancelledInAnyPhaseItLeavesNothingBehind) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    const std::uint64_t revision = desk.session().revision();
+    const std::size_t last = desk.scan.picturesOfAScan() - 1;
+    for (const auto& [phase, frame] : std::vector<std::pair<Phase, std::size_t>>{{Phase::Lighting, 0},
+                                                                                 {Phase::Lighting, 3},
+                                                                                 {Phase::Settling, 0},
+                                                                                 {Phase::Settling, last},
+                                                                                 {Phase::Decoding, 0}}) {
+        bool isCancelled = false;
+        when(desk, phase, frame, [&] {
+            isCancelled = true;
+            desk.scan.cancel();
+        });
+        desk.scan.start();
+        ASSERT_TRUE(waitFor([&] { return isCancelled; }));
+        EXPECT_EQ(desk.scan.state().phase, Phase::Idle);
+        pass(desk.rig.clock(), 3s);
+        EXPECT_EQ(desk.scan.state().phase, Phase::Idle);
+        EXPECT_TRUE(desk.isDark());
+        EXPECT_TRUE(desk.session().measured().views.empty());
+        EXPECT_EQ(desk.session().revision(), revision);
+    }
+    ASSERT_TRUE(desk.scanHere()) << "and the next one goes through";
+    expectSpotsNearTruth(desk, desk.session().measured().views.back());
+}
+
+TEST(ScanPresenter, PausesAndGoesOn) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    when(desk, Phase::Settling, 2, [&] { desk.scan.pause(); });
+    desk.scan.start();
+    ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == Phase::Paused; }));
+    // Elsewhere meanwhile: the camera is still needed.
+    desk.scan.setActive(false);
+    pass(desk.rig.clock(), 5s);
+    EXPECT_EQ(desk.scan.state().phase, Phase::Paused);
+    EXPECT_EQ(desk.scan.state().next, 2U);
+    EXPECT_TRUE(desk.isDark());
+    desk.scan.resume();
+    ASSERT_TRUE(waitFor([&] { return !desk.isScanning(); }));
+    ASSERT_EQ(desk.session().measured().views.size(), 1U);
+    expectSpotsNearTruth(desk, desk.session().measured().views.back());
+
+    desk.scan.setActive(true);
+    ASSERT_TRUE(waitFor([&] { return desk.scan.obstacle().isEmpty(); }));
+    when(desk, Phase::Settling, 2, [&] { desk.scan.pause(); });
+    desk.scan.start();
+    ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == Phase::Paused; }));
+    desk.scan.setActive(false);
+    const auto* camera = qobject_cast<SimulatedCamera*>(desk.workbench.camera());
+    EXPECT_TRUE(camera->isRunning());
+    desk.scan.cancel();
+    EXPECT_FALSE(camera->isRunning()) << "nobody needs its pictures";
+}
+
+TEST(ScanPresenter, FailsWithAReasonWhereSomethingIsPulled) {
+    for (const Phase phase : {Phase::Lighting, Phase::Settling, Phase::Paused}) {
+        for (const bool isSkin : {true, false}) {
+            Desk desk;
+            ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+            const QSignalSpy cameraFailed(&desk.scan, &ScanPresenter::cameraFailed);
+            when(desk, phase == Phase::Paused ? Phase::Settling : phase, 2, [&] {
+                if (phase == Phase::Paused)
+                    desk.scan.pause();
+                isSkin ? desk.rig.pullSkin() : desk.rig.pullCamera();
+            });
+            desk.scan.start();
+            ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == Phase::Failed; }));
+            EXPECT_THAT(desk.scan.state().why, testing::HasSubstr(isSkin ? "disconnected" : "unplugged"));
+            pass(desk.rig.clock(), 2s);
+            EXPECT_EQ(cameraFailed.count(), isSkin ? 0 : 1) << "said once";
+            EXPECT_TRUE(desk.session().measured().views.empty());
+            EXPECT_FALSE(desk.scan.obstacle().isEmpty());
+            desk.rig.plugSkin();
+            desk.rig.plugCamera();
+            ASSERT_TRUE(desk.connectSkin());
+            desk.scan.setActive(false);
+            desk.scan.setActive(true);
+            ASSERT_TRUE(waitFor([&] { return desk.scan.obstacle().isEmpty(); }));
+            ASSERT_TRUE(desk.scanHere());
+        }
+    }
+}
+
+TEST(ScanPresenter, BreaksOffWhereCameraOrSkinBecomesAnother) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    when(desk, Phase::Settling, 2, [&] {
+        QMetaObject::invokeMethod(
+            &desk.workbench, [&] { desk.workbench.chooseCamera(1); }, Qt::QueuedConnection);
+    });
+    desk.scan.start();
+    ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == Phase::Failed; }));
+    EXPECT_THAT(desk.scan.state().why, testing::HasSubstr("another camera"));
+    ASSERT_TRUE(waitFor([&] { return desk.scan.obstacle().isEmpty(); }));
+    // A file that is opened meanwhile is of another body.
+    OpenedRecording other{desk.session().measured(), desk.session().decisions()};
+    when(desk, Phase::Decoding, 0, [&] { desk.session().load(other); });
+    desk.scan.start();
+    ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == Phase::Failed; }));
+    pass(desk.rig.clock(), 1s);
+    EXPECT_TRUE(desk.session().measured().views.empty());
+}
+
+TEST(ScanPresenter, NobodyBlinksDuringAScan) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    const QSignalSpy blinking(&desk.connection, &ConnectPresenter::blinking);
+    const ModuleId module = desk.rig.world().skin.modules.front().id;
+    when(desk, Phase::Settling, 2, [&] { desk.connection.blink(module); });
+    ASSERT_TRUE(desk.scanHere());
+    EXPECT_EQ(blinking.count(), 0);
+    expectSpotsNearTruth(desk, desk.session().measured().views.back());
+    desk.connection.blink(module);
+    EXPECT_EQ(blinking.count(), 1);
+}
+
+TEST(ScanPresenter, ScansAViewAgainInItsPlace) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    ASSERT_TRUE(desk.scanHere());
+    const std::string name = desk.session().measured().views.front().name;
+    const auto pictures = desk.session().measured().views.front().pictures;
+    ASSERT_TRUE(desk.moveCamera());
+    desk.scan.start(name);
+    ASSERT_TRUE(waitFor([&] { return !desk.isScanning(); }));
+    ASSERT_EQ(desk.session().measured().views.size(), 1U);
+    const ScannedView& view = desk.session().measured().views.front();
+    EXPECT_EQ(view.name, name);
+    EXPECT_EQ(view.decoded.name, name);
+    EXPECT_NE(view.pictures, pictures);
+    expectSpotsNearTruth(desk, view);
+    const auto found = view.decoded.found.front();
+    const auto evidence = evidenceOf(view, found.module, found.pixel);
+    ASSERT_TRUE(evidence);
+    EXPECT_GT(evidence->contrast, 20);
+    EXPECT_FALSE(evidenceOf(view, found.module, Vector2d(-500, 10)));
+}
+
+TEST(ScanPresenter, SaysHowFarTheCameraMoved) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    when(desk, Phase::Settling, desk.scan.picturesOfAScan() / 2, [&] { desk.rig.knockCamera(8); });
+    double moved = -1;
+    QObject::connect(&desk.scan, &ScanPresenter::scanned, &desk.scan,
+                     [&](const std::string&, double moved_px) { moved = moved_px; });
+    desk.scan.start();
+    ASSERT_TRUE(waitFor([&] { return !desk.isScanning(); }));
+    EXPECT_NEAR(moved, 8, 1);
+}
+
+}  // namespace
+}  // namespace skincal

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 
+#include "ui/presenters/demo_presenter.h"
 #include "ui/presenters/export_presenter.h"
 #include "ui/presenters/pose_presenter.h"
 #include "ui/presenters/problem_model.h"
@@ -64,6 +65,7 @@ class MainWindow : public QMainWindow {
     ScanPresenter scan_;
     ViewsPresenter views_;
     ExportPresenter export_;
+    DemoPresenter demo_;
     StepModel steps_;
     ProblemModel problems_;
 

@@ -30,6 +30,9 @@ struct RigHands {
     std::function<void(ModuleId, const Isometry3d& T_u_v)> moveCamera;
     /// Puts the camera to the next of the rig's own places, for while nothing is placed.
     std::function<void()> moveCameraOn;
+    /// A fingertip presses on a point of the module, N, until release(); again and again to drag it.
+    std::function<void(ModuleId, const Vector3d& point_u, double force)> touch;
+    std::function<void()> release;
     /// What the maker of the camera says of its lens.
     std::optional<CameraModel> intrinsics;
 };

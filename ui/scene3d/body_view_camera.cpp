@@ -153,6 +153,11 @@ void BodyViewWidget::updateWords() {
     } else {
         content.caption = BodyWords::caption(layout_);
         content.legend = BodyWords::legend(*body_, layout_, mode_, values_, dark_);
+        if (mode_ == ColourMode::Values && !valueTitle_.isEmpty()) {
+            content.legend.title = valueTitle_;
+            content.legend.low = valueLow_;
+            content.legend.high = valueHigh_;
+        }
         if (ellipsoidScale_ > 0)
             content.legend.more.push_back({toQt(ellipsoidColour(dark_)), BodyWords::ellipsoids(ellipsoidScale_)});
         content.labels = labels();

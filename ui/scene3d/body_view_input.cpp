@@ -40,6 +40,11 @@ void BodyViewWidget::measureTo(ModuleId module) {
 }
 
 std::optional<ModuleId> BodyViewWidget::moduleAt(const QPointF& position) const {
+    const auto pick = pickAt(position);
+    return pick ? std::optional(pick->module) : std::nullopt;
+}
+
+std::optional<ScenePick> BodyViewWidget::pickAt(const QPointF& position) const {
     if (layout_.modules.empty())
         return std::nullopt;
     vtkCamera* camera = scene_->renderer().GetActiveCamera();
@@ -52,7 +57,7 @@ std::optional<ModuleId> BodyViewWidget::moduleAt(const QPointF& position) const 
     const Vector3d ahead(camera->GetDirectionOfProjection());
     const Vector3d up = Vector3d(camera->GetViewUp());
     const Vector3d right = ahead.cross(up).normalized();
-    return pickModule(layout_, eye, ahead + x * right + y * right.cross(ahead));
+    return pickPoint(layout_, eye, ahead + x * right + y * right.cross(ahead));
 }
 
 std::optional<QPointF> BodyViewWidget::positionOf(const Vector3d& point) const {

@@ -166,6 +166,13 @@ void BodyViewWidget::setCellHeights(std::span<const float> heights) {
     scene_->animate();
 }
 
+void BodyViewWidget::setValueWords(const QString& title, const QString& low, const QString& high) {
+    valueTitle_ = title;
+    valueLow_ = low;
+    valueHigh_ = high;
+    updateWords();
+}
+
 void BodyViewWidget::setMeasuring(bool measuring) {
     if (measuring == measuring_)
         return;

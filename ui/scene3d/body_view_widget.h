@@ -67,12 +67,14 @@ class BodyViewWidget : public QWidget {
     void setDark(bool dark);
     [[nodiscard]] bool dark() const { return dark_; }
 
-    /// Values from 0 to 1 by position in BodyModel::modules, shown in ColourMode::Values; missing ones count as
+    /// Values from 0 to 1 by position in BodyModel::modules, shown in ColourMode::Values; missing ones and NaN count as
     /// unknown. Only colours change, not geometry: 30 times a second for 1,000 modules is well within reach.
     void setCellValues(std::span<const float> values);
     /// How far each module's face stands out along its normal, m, likewise; 0 for missing ones. Forgotten with the
     /// snapshot.
     void setCellHeights(std::span<const float> heights);
+    /// What 0 and 1 of setCellValues stand for.
+    void setValueWords(const QString& title, const QString& low, const QString& high);
 
     /// Moves the camera, in the direction it looks, to where it has the whole body in view.
     void fitView();
@@ -87,6 +89,8 @@ class BodyViewWidget : public QWidget {
 
     /// The module whose board is drawn at a place of this widget.
     [[nodiscard]] std::optional<ModuleId> moduleAt(const QPointF& position) const;
+    /// Where on which board.
+    [[nodiscard]] std::optional<ScenePick> pickAt(const QPointF& position) const;
     /// Where a point of the scene (for placed modules, the body frame) is drawn in this widget.
     [[nodiscard]] std::optional<QPointF> positionOf(const Vector3d& point) const;
     [[nodiscard]] const SceneLayout& layoutShown() const { return layout_; }
@@ -130,6 +134,7 @@ class BodyViewWidget : public QWidget {
     SceneLayout layout_;
     std::optional<ModuleValues> values_;
     std::vector<float> live_;
+    QString valueTitle_, valueLow_, valueHigh_;
     ColourMode mode_ = ColourMode::Patch;
     double ellipsoidScale_ = 0;  ///< 0 while they are hidden
     bool ellipsoids_ = false;

@@ -59,8 +59,9 @@ std::vector<Rgb> coloursOf(const SceneLayout& layout, ColourMode mode, const std
         if (mode == ColourMode::Patch) {
             colour = module.patch ? toRgb(patchColour(*module.patch)) : unknownColour(dark);
         } else if (mode == ColourMode::Values) {
-            colour = module.index < live.size() ? valueColour(static_cast<double>(live[module.index]), dark)
-                                                : unknownColour(dark);
+            colour = module.index < live.size() && !std::isnan(live[module.index])
+                         ? valueColour(static_cast<double>(live[module.index]), dark)
+                         : unknownColour(dark);
         } else if (values) {
             const auto share = values->share(module.index);
             colour = share ? valueColour(*share, dark) : unknownColour(dark);

@@ -164,8 +164,8 @@ SceneLayout layOut(const BodyModel& body) {
     return layout;
 }
 
-std::optional<ModuleId> pickModule(const SceneLayout& layout, const Vector3d& origin, const Vector3d& direction) {
-    std::optional<ModuleId> best;
+std::optional<ScenePick> pickPoint(const SceneLayout& layout, const Vector3d& origin, const Vector3d& direction) {
+    std::optional<ScenePick> best;
     double nearest = 1e300;
     for (const ShownModule& module : layout.modules) {
         const Vector3d o = module.T_s_u.inverse() * origin;
@@ -188,10 +188,15 @@ std::optional<ModuleId> pickModule(const SceneLayout& layout, const Vector3d& or
         }
         if (inside) {
             nearest = along;
-            best = module.id;
+            best = ScenePick{module.id, Vector3d(hit.x(), hit.y(), 0)};
         }
     }
     return best;
+}
+
+std::optional<ModuleId> pickModule(const SceneLayout& layout, const Vector3d& origin, const Vector3d& direction) {
+    const auto pick = pickPoint(layout, origin, direction);
+    return pick ? std::optional(pick->module) : std::nullopt;
 }
 
 }  // namespace skincal

@@ -39,8 +39,17 @@ struct SceneLayout {
 [[nodiscard]] SceneLayout layOut(const BodyModel& body);
 SceneLayout layOut(const BodyModel&& body) = delete;  // templates would be gone
 
-/// The module whose board a ray hits first, from either side.
+/// A place on a board.
+struct ScenePick {
+    ModuleId module;
+    Vector3d point_u = Vector3d::Zero();  ///< module frame
+};
+
+/// The board that a ray hits first, from either side, and where.
 /// @param direction  of any length but zero; what lies behind the origin is not hit.
+[[nodiscard]] std::optional<ScenePick> pickPoint(const SceneLayout& layout, const Vector3d& origin,
+                                                 const Vector3d& direction);
+/// The module alone.
 [[nodiscard]] std::optional<ModuleId> pickModule(const SceneLayout& layout, const Vector3d& origin,
                                                  const Vector3d& direction);
 

@@ -52,6 +52,7 @@ QString Theme::styleSheet() const {
                "QPushButton:hover:enabled { border-color: %4; }"
                "QPushButton:focus, QTableView:focus, QListView:focus { border-color: %4; }"
                "QPushButton:disabled { color: %5; }"
+               "QPushButton:checked { background: %7; border-color: %4; }"
                "QPushButton[primary=\"true\"]:enabled { background: %4; color: %6; border-color: %4; font-weight: 600; "
                "}"
                "QSplitter::handle { background: %1; }"
@@ -62,7 +63,8 @@ QString Theme::styleSheet() const {
                "QToolBar { border-bottom: 1px solid %1; spacing: 4px; padding: 3px; }")
         .arg(line.name(), muted.name(), panel.name(), accent.name(),
              isDark ? QStringLiteral("#69717f") : QStringLiteral("#9aa1ad"),
-             isDark ? QStringLiteral("#0b1424") : QStringLiteral("#ffffff"));
+             isDark ? QStringLiteral("#0b1424") : QStringLiteral("#ffffff"),
+             isDark ? QStringLiteral("#2d4468") : QStringLiteral("#d3e2fa"));
 }
 
 QColor patchTint(unsigned patch) {

@@ -21,6 +21,7 @@
 
 #include "ui/pages/camera_page.h"
 #include "ui/pages/connect_page.h"
+#include "ui/pages/demo_page.h"
 #include "ui/pages/export_page.h"
 #include "ui/pages/pose_page.h"
 #include "ui/pages/result_page.h"
@@ -28,6 +29,7 @@
 #include "ui/pages/views_page.h"
 #include "ui/scene3d/body_view_widget.h"
 #include "ui/widgets/theme.h"
+#include "ui/window/demo_stage.h"
 #include "ui/window/step_delegate.h"
 
 namespace skincal {
@@ -47,6 +49,7 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
       scan_(workbench),
       views_(workbench),
       export_(workbench),
+      demo_(workbench),
       steps_(workbench, connection_, scan_),
       problems_(workbench, connection_, scan_) {
     setWindowTitle(tr("SkinCal[*]"));
@@ -55,6 +58,8 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
     buildPages();
     buildFrame();
     buildToolBar();
+    auto* demo = new DemoStage(demo_, *static_cast<DemoPage*>(pages_.at(indexOf(Step::Demo))), *body_, this);
+    connect(demo, &DemoStage::activeChanged, colours_, &QWidget::setDisabled);
 
     Session& session = workbench_.session();
     connect(&session, &Session::solutionChanged, this, &MainWindow::showBody);
@@ -109,7 +114,8 @@ void MainWindow::buildPages() {
     auto* viewsPage = new ViewsPage(views_, scan_);
     auto* resultPage = new ResultPage(workbench_);
     auto* exportPage = new ExportPage(export_);
-    pages_ = {connectPage, posePage, cameraPage, scanPage, viewsPage, resultPage, exportPage, nullptr};
+    auto* demoPage = new DemoPage(demo_);
+    pages_ = {connectPage, posePage, cameraPage, scanPage, viewsPage, resultPage, exportPage, demoPage};
     for (Page* page : pages_) {
         if (page != nullptr)
             stack_->addWidget(page);

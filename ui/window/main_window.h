@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/session/session_keeper.h"
+#include "ui/presenters/demo_presenter.h"
 #include "ui/presenters/export_presenter.h"
 #include "ui/presenters/pose_presenter.h"
 #include "ui/presenters/problem_model.h"
@@ -67,6 +68,7 @@ class MainWindow : public QMainWindow {
     ScanPresenter scan_;
     ViewsPresenter views_;
     ExportPresenter export_;
+    DemoPresenter demo_;
     StepModel steps_;
     ProblemModel problems_;
 

@@ -33,6 +33,12 @@ void offerRig(Workbench& workbench, SimulatedRig& rig) {
         place = (place + 1) % rig.suggestedViews().size();
         rig.moveCamera(rig.suggestedViews()[place]);
     };
+    hands.touch = [&rig, poseOf](ModuleId module, const Vector3d& point_u, double force) {
+        // The document may be of another skin.
+        if (rig.world().skin.indexById().contains(module))
+            rig.touch(poseOf(module) * point_u, force);
+    };
+    hands.release = [&rig] { rig.release(); };
     hands.intrinsics = rig.world().scenario.camera;
     workbench.hands = std::move(hands);
 }

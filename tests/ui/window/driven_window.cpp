@@ -110,4 +110,14 @@ void DrivenWindow::takePicture(const QString& name) {
     }
 }
 
+void DrivenWindow::takeBodyPicture(const QString& name) {
+    const QString folder = qEnvironmentVariable("SKINCAL_SCREENSHOTS");
+    if (folder.isEmpty())
+        return;
+    for (int turn = 0; turn < 20; ++turn)
+        QCoreApplication::processEvents();
+    QDir().mkpath(folder);
+    window.bodyView().grabPicture().save(QDir(folder).filePath(name + QStringLiteral(".png")));
+}
+
 }  // namespace skincal

@@ -19,14 +19,15 @@ void TouchFilter::setOn(bool on) {
 }
 
 bool TouchFilter::eventFilter(QObject* watched, QEvent* event) {
-    if (!isOn_)
+    // The scene sees no part of a press that began as a touch.
+    if (!isOn_ && !isPressed_)
         return QObject::eventFilter(watched, event);
     switch (event->type()) {
         case QEvent::MouseButtonPress:
         case QEvent::MouseButtonDblClick: {
             const auto* mouse = static_cast<QMouseEvent*>(event);
-            if (mouse->button() != Qt::LeftButton || mouse->modifiers() != Qt::NoModifier || view_.measuring() ||
-                !view_.pickAt(mouse->position()))
+            if (!isOn_ || mouse->button() != Qt::LeftButton || mouse->modifiers() != Qt::NoModifier ||
+                view_.measuring() || !view_.pickAt(mouse->position()))
                 break;
             view_.setFocus(Qt::MouseFocusReason);
             isPressed_ = true;
@@ -36,14 +37,17 @@ bool TouchFilter::eventFilter(QObject* watched, QEvent* event) {
         case QEvent::MouseMove:
             if (!isPressed_)
                 break;
-            follow(static_cast<QMouseEvent*>(event)->position());
+            if (isOn_)
+                follow(static_cast<QMouseEvent*>(event)->position());
             return true;
         case QEvent::MouseButtonRelease:
             if (!isPressed_ || static_cast<QMouseEvent*>(event)->button() != Qt::LeftButton)
                 break;
+            isPressed_ = false;
             end();
             return true;
         case QEvent::Hide:
+            isPressed_ = false;
             end();
             break;
         default:
@@ -62,7 +66,6 @@ void TouchFilter::follow(const QPointF& position) {
 }
 
 void TouchFilter::end() {
-    isPressed_ = false;
     if (std::exchange(isTouching_, false))
         emit released();
 }

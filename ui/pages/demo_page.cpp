@@ -141,7 +141,7 @@ QLayout* DemoPage::buildTime() {
     time_->setSingleStep(10);
     time_->setPageStep(100);
     live_->setObjectName(QStringLiteral("live"));
-    live_->setToolTip(tr("Stops at this moment, or goes on with what the skin feels now (Space)"));
+    live_->setToolTip(tr("Stops at this moment, or goes on with what the skin feels now (Ctrl+P)"));
     // Its ends are those of the curves above.
     const int handle = time_->style()->pixelMetric(QStyle::PM_SliderLength, nullptr, time_) / 2;
     row->setContentsMargins(TracePlot::kLeft - handle, 0, 0, 0);
@@ -159,8 +159,8 @@ QLayout* DemoPage::buildTime() {
             [this](int value) { presenter_.showAgo(std::chrono::milliseconds(-value * kTick_ms)); });
     const auto toggle = [this] { presenter_.setLive(!presenter_.isLive()); };
     connect(live_, &QPushButton::clicked, this, toggle);
-    auto* space = new QShortcut(QKeySequence(Qt::Key_Space), this);
-    connect(space, &QShortcut::activated, this, toggle);
+    auto* key = new QShortcut(QKeySequence(Qt::CTRL | Qt::Key_P), this);
+    connect(key, &QShortcut::activated, this, toggle);
     return row;
 }
 

@@ -200,8 +200,11 @@ TEST_F(LiveDemo, StreamsAndColoursOnlyWhileItIsShown) {
     EXPECT_NEAR(samples, 20, 2);
     EXPECT_EQ(view().colourMode(), ColourMode::Values);
     press(pixelOf(*facing().front()));
+    EXPECT_TRUE(driven.rig.contact().has_value());
     driven.window.showStep(Step::Result);
     EXPECT_FALSE(driven.rig.contact().has_value());
+    // The rest of that press is no click on another page.
+    release(pixelOf(*facing().front()));
     EXPECT_EQ(view().colourMode(), ColourMode::Patch);
     EXPECT_TRUE(view().selected().empty());
     samples = 0;

@@ -66,7 +66,7 @@ struct Progress {
     std::size_t patchesPlaced = 0;
     std::size_t modulesPlaced = 0;
     bool areViewsFew = false;  ///< as the newest solution sees it
-    bool isTrusted = false;  ///< the verdict is good or usable
+    bool isTrusted = false;    ///< the verdict is good or usable
     bool isExported = false;
     bool isExportNewest = false;
 };

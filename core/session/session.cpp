@@ -186,7 +186,8 @@ void Session::saveCopy(const QString& directory) {
 void Session::write(const QString& directory, bool isCopy) {
     if (!isCopy && !decisions_.camera) {
         const QString why = tr("The camera's intrinsics are not known yet, and a recording can't be without.");
-        QMetaObject::invokeMethod(this, [this, why] { emit fileFailed(why); }, Qt::QueuedConnection);
+        QMetaObject::invokeMethod(
+            this, [this, why] { emit fileFailed(why); }, Qt::QueuedConnection);
         return;
     }
     [[maybe_unused]] const auto future =

@@ -37,9 +37,9 @@ ExportPresenter::ExportPresenter(Workbench& workbench, QObject* parent) : QObjec
          [](const BodyModel& body) { return exportPly(body); }},
         {tr("Report (PDF)"), QStringLiteral(".pdf"),
          tr("For people and files: verdict, reasons, figures, and a table of all modules. Millimetres, body frame."),
-         [](const BodyModel& body) { return reportPdf(body, now()).toStdString(); }},
+         [](const BodyModel& body) { return reportPdf(body, now()).toStdString(); }, true},
         {tr("Report (HTML)"), QStringLiteral(".html"), tr("The same for a browser."),
-         [](const BodyModel& body) { return reportHtml(body, now()).toStdString(); }},
+         [](const BodyModel& body) { return reportHtml(body, now()).toStdString(); }, true},
     };
     connect(&workbench.session(), &Session::solutionChanged, this, &ExportPresenter::changed);
 }

@@ -12,6 +12,7 @@ struct ExportFormat {
     QString suffix;       ///< of the file, with its dot
     QString description;  ///< what it holds, its frames and units
     std::function<std::string(const BodyModel&)> bytes;
+    bool isReport = false;  ///< for people: bears the time at which it was written
 };
 
 /// Writes the newest body for other programs.

@@ -94,6 +94,11 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
         EXPECT_EQ(desk.exporter.write(format, file), "");
         const std::string text = test::readText(file);
         EXPECT_FALSE(text.empty());
+        // A file where a folder should be: nothing is written.
+        EXPECT_NE(desk.exporter.write(format, file / "body"), "");
+        EXPECT_EQ(test::readText(file), text);
+        if (desk.exporter.formats()[format].isReport)
+            continue;
         for (const int lines : {1, 7}) {
             QString preview = desk.exporter.preview(format, lines);
             EXPECT_EQ(preview.count('\n'), lines);
@@ -102,9 +107,6 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
             EXPECT_EQ(text.substr(0, preview.toStdString().size()), preview.toStdString());
         }
         EXPECT_EQ(desk.exporter.preview(format, 1'000'000).toStdString(), text);
-        // A file where a folder should be: nothing is written.
-        EXPECT_NE(desk.exporter.write(format, file / "body"), "");
-        EXPECT_EQ(test::readText(file), text);
     }
     EXPECT_EQ(static_cast<std::size_t>(written.count()), desk.exporter.formats().size());
     const auto read = readBody(directory / "body.body.json");

@@ -6,4 +6,4 @@ cd "$(dirname "$0")/.."
 scripts/install-dependencies.sh
 [ -f build/release/build.ninja ] || cmake --preset release
 cmake --build --preset release --target ui_window
-SKINCAL_SCREENSHOTS=${1:-$PWD/docs/window} build/release/bin/ui_window --gtest_filter='Demo.*'
+SKINCAL_SCREENSHOTS=${1:-$PWD/docs/window} build/release/bin/ui_window --gtest_filter='Demo.*:LiveDemo.FeelsTheMouseWhereItIsAndForgetsItAfterwards'

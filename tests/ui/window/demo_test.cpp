@@ -28,7 +28,6 @@ BodyComparison comparedWithTruth(const BodyModel& body, const World& world) {
 
 TEST(Demo, LeadsFromConnectToAnExportedFile) {
     DrivenWindow driven;
-    driven.takePicture("1-connect-empty");
     ASSERT_TRUE(driven.connectSkin());
     driven.takePicture("1-connect");
     EXPECT_EQ(driven.session().measured().skin.modules.size(), driven.rig.world().skin.modules.size());

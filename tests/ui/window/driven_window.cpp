@@ -106,6 +106,8 @@ void DrivenWindow::takePicture(const QString& name) {
         // Only the view itself can read what OpenGL drew.
         BodyViewWidget& body = window.bodyView();
         QPainter(&picture).drawImage(body.mapTo(&window, QPoint(0, 0)), body.grabPicture());
+        constexpr int kWidth = 1080;  // what a page on the web has room for
+        picture = picture.scaledToWidth(kWidth, Qt::SmoothTransformation);
         picture.save(QDir(folder).filePath(name + (dark ? QStringLiteral("-dark.png") : QStringLiteral(".png"))));
     }
 }

@@ -9,6 +9,8 @@
 namespace skincal {
 namespace {
 
+/// Upside down is not the same pose, but tells hardly more of a rotation: it counts as if it were so far away.
+constexpr double kUpsideDown = 30 * kDegree;
 /// Two poses nearer than this are one.
 constexpr double kSamePose = 12 * kDegree;
 constexpr std::chrono::microseconds kFrame{33'000};
@@ -28,8 +30,10 @@ std::optional<Vector3d> farthestDirection(const std::vector<Vector3d>& covered) 
         const double radius = std::sqrt(1 - z * z);
         const Vector3d direction(radius * std::cos(golden * i), radius * std::sin(golden * i), z);
         double nearest = std::numbers::pi;
-        for (const Vector3d& other : covered)
-            nearest = std::min(nearest, std::acos(std::clamp(direction.dot(other), -1.0, 1.0)));
+        for (const Vector3d& other : covered) {
+            const double angle = std::acos(std::clamp(direction.dot(other), -1.0, 1.0));
+            nearest = std::min({nearest, angle, std::numbers::pi - angle + kUpsideDown});
+        }
         if (nearest > farthest + 1e-9) {
             farthest = nearest;
             best = direction;

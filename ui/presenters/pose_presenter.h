@@ -77,8 +77,9 @@ class PosePresenter : public QObject {
     bool isActive_ = false;
 };
 
-/// Of directions spread evenly over the sphere, the one farthest from all that are covered; the first pose is as the
-/// body is held, so there is nothing to aim at before it.
+/// Of directions spread evenly over the sphere, the one farthest from all that are covered, where upside down counts as
+/// near, too: two opposite poses leave the turn about gravity open. The first pose is as the body is held, so there is
+/// nothing to aim at before it.
 [[nodiscard]] std::optional<Vector3d> farthestDirection(const std::vector<Vector3d>& covered);
 
 }  // namespace skincal

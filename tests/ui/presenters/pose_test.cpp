@@ -122,10 +122,14 @@ TEST(FarthestDirection, IsFartherFromAllThanAnyOther) {
     EXPECT_FALSE(farthestDirection({}));
     const auto nearest = [](const Vector3d& direction, const std::vector<Vector3d>& covered) {
         double angle = 4;
-        for (const Vector3d& other : covered)
-            angle = std::min(angle, std::acos(std::clamp(direction.dot(other), -1.0, 1.0)));
+        for (const Vector3d& other : covered) {
+            const double between = std::acos(std::clamp(direction.dot(other), -1.0, 1.0));
+            angle = std::min({angle, between, 210 * kDegree - between});
+        }
         return angle;
     };
+    const auto second = farthestDirection({Vector3d::UnitZ()});
+    EXPECT_LT(std::abs(second->z()), 0.5) << "across, not upside down: that would leave the turn about gravity open";
     Random random(1);
     for (int i = 0; i < 200; ++i) {
         std::vector<Vector3d> covered;

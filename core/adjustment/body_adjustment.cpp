@@ -6,23 +6,9 @@
 #include <stdexcept>
 
 #include "core/adjustment/adjustment_problem.h"
+#include "core/geometry/stop_when_cancelled.h"
 
 namespace skincal {
-namespace {
-
-class StopWhenCancelled final : public ceres::IterationCallback {
-  public:
-    explicit StopWhenCancelled(const RunContext& context) : context_(context) {}
-    ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-        return context_.isCancelled() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-    }
-
-  private:
-    const RunContext& context_;
-};
-
-}  // namespace
-
 bool AdjustmentOptions::validate() const {
     return accelerometerSigma > 0 && linkSigma > 0 && biasSigma > 0 && scaleSigma > 0 && misalignmentSigma >= 0 &&
            gravity > 0 && pixelSigmaFloor_px > 0 && pixelSigmaFactor > 0 && accelerometerSigmaFactor > 0 &&

@@ -8,6 +8,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "core/geometry/statistics.h"
+#include "core/geometry/stop_when_cancelled.h"
 
 namespace skincal {
 namespace {
@@ -44,17 +45,6 @@ std::optional<BoardPose> poseOf(const BoardView& view, const BoardPlan& plan, co
     const bool usable = std::all_of(pose.begin(), pose.end(), [](double v) { return std::isfinite(v); });
     return usable && translation[2] > 0 ? std::optional(pose) : std::nullopt;
 }
-
-class StopWhenCancelled : public ceres::IterationCallback {
-  public:
-    explicit StopWhenCancelled(const RunContext& context) : context_(context) {}
-    ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-        return context_.isCancelled() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-    }
-
-  private:
-    const RunContext& context_;
-};
 
 }  // namespace
 

@@ -93,15 +93,15 @@ void Solver::startNext() {
                     emit self->guided(guidance);
             });
         }
-        deliver([self, run] {
+        deliver([self] {
             if (self)
-                self->finish(run);
+                self->finish();
         });
     };
     [[maybe_unused]] const auto future = QtConcurrent::run(&pool_, std::move(work));
 }
 
-void Solver::finish(std::uint64_t) {
+void Solver::finish() {
     if (next_) {
         startNext();
         return;

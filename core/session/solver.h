@@ -42,7 +42,7 @@ class Solver : public QObject {
     };
 
     void startNext();
-    void finish(std::uint64_t run);
+    void finish();
 
     QThreadPool pool_;
     std::shared_ptr<std::atomic<bool>> cancelled_;

@@ -14,9 +14,12 @@
 
 namespace skincal {
 int runWindow(int argc, char** argv, const WindowOptions& options) {
-    if (qEnvironmentVariableIsEmpty("DISPLAY") && qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY"))
+    if (qEnvironmentVariableIsEmpty("DISPLAY"))
         return badInput(
             "there is no display to open the window on; \"skincal --help\" lists the commands that need none");
+    // The 3D view needs X, which Wayland's desktops offer, too.
+    if (qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM"))
+        qputenv("QT_QPA_PLATFORM", "xcb");
     QSurfaceFormat::setDefaultFormat(SceneWidget::sceneFormat());
     QApplication application(argc, argv);
     QApplication::setApplicationName(QStringLiteral("SkinCal"));

@@ -7,7 +7,6 @@
 namespace skincal {
 
 struct WindowOptions {
-    bool demo = false;                               ///< opens on the simulated rig
     std::string scenario = "demo";                   ///< what the rig is
     std::optional<std::filesystem::path> recording;  ///< to open at once
     bool light = false;                              ///< light colours, whatever the desktop has

@@ -20,25 +20,30 @@ QString lockOf(const QString& directory) {
 SessionKeeper::SessionKeeper(Session& session, const QString& folder, QObject* parent)
     : QObject(parent), session_(session), folder_(folder) {
     QDir().mkpath(folder_);
-    directory_ =
-        QDir(folder_).filePath(QStringLiteral("%1-%2%3")
-                                   .arg(QDateTime::currentDateTime().toString(QStringLiteral("yyyyMMdd-hhmmss")))
-                                   .arg(QCoreApplication::applicationPid())
-                                   .arg(QLatin1String(kSuffix)));
-    lock_ = std::make_unique<QLockFile>(lockOf(directory_));
-    lock_->setStaleLockTime(0);  // for as long as the program runs
-    if (!lock_->tryLock(0)) {
-        lock_.reset();
-        QMetaObject::invokeMethod(
-            this,
-            [this] { emit failed(tr("Unsaved work can't be kept in %1: it may not be written to.").arg(folder_)); },
-            Qt::QueuedConnection);
-        return;
-    }
     timer_.setSingleShot(true);
     connect(&timer_, &QTimer::timeout, this, [this] { session_.saveCopy(directory_); });
     connect(&session, &Session::modifiedChanged, this, &SessionKeeper::sessionChanged);
-    connect(&session, &Session::saved, this, [this] { sessionChanged(); });
+    connect(&session, &Session::saved, this, &SessionKeeper::removeOwn);
+    // What was not saved before is another document: it stays.
+    connect(&session, &Session::opened, this, [this] {
+        if (QDir(directory_).exists())
+            begin();
+    });
+    begin();
+}
+
+void SessionKeeper::begin() {
+    const QString stem =
+        QStringLiteral("%1-%2").arg(QDateTime::currentDateTime().toString(QStringLiteral("yyyyMMdd-hhmmss-zzz")));
+    directory_ = QDir(folder_).filePath(stem.arg(QCoreApplication::applicationPid()) + QLatin1String(kSuffix));
+    lock_ = std::make_unique<QLockFile>(lockOf(directory_));
+    lock_->setStaleLockTime(0);  // for as long as the program runs
+    if (lock_->tryLock(0))
+        return;
+    lock_.reset();
+    const QString why = tr("Unsaved work can't be kept in %1: it may not be written to.").arg(folder_);
+    QMetaObject::invokeMethod(
+        this, [this, why] { emit failed(why); }, Qt::QueuedConnection);
 }
 
 SessionKeeper::~SessionKeeper() {
@@ -46,13 +51,15 @@ SessionKeeper::~SessionKeeper() {
 }
 
 void SessionKeeper::sessionChanged() {
-    if (session_.isModified() && !session_.measured().skin.modules.empty()) {
-        if (!timer_.isActive())
-            timer_.start(kCalm);
-        return;
-    }
-    timer_.stop();
-    QDir(directory_).removeRecursively();
+    if (!session_.isModified())
+        timer_.stop();
+    else if (lock_ && !timer_.isActive() && !session_.measured().skin.modules.empty())
+        timer_.start(kCalm);
+}
+
+void SessionKeeper::removeOwn() {
+    if (!session_.isModified())
+        QDir(directory_).removeRecursively();
 }
 
 void SessionKeeper::flush() {

@@ -18,8 +18,8 @@ struct KeptSession {
 };
 
 /// Keeps what was measured and decided on the disk while nobody saves it: a crash or an empty battery costs a second of
-/// work at most. Each running program has a directory of its own, which goes once the session is saved or has nothing
-/// in it; what is left of a program that has ended can be opened again.
+/// work at most. Each document of a running program has a directory of its own, which goes once it is saved; what was
+/// not saved when another was opened, or when the program ended, can be opened again.
 class SessionKeeper : public QObject {
     Q_OBJECT
   public:
@@ -42,7 +42,9 @@ class SessionKeeper : public QObject {
     void failed(const QString& why);
 
   private:
+    void begin();
     void sessionChanged();
+    void removeOwn();
 
     Session& session_;
     QString folder_;

@@ -4,7 +4,6 @@
 #include "ui/presenters/pose_presenter.h"
 
 class QCheckBox;
-class QListWidget;
 class QProgressBar;
 class QPushButton;
 class QTableView;

@@ -57,8 +57,10 @@ QString ExportPresenter::preview(std::size_t format, int lines) const {
         return tr("%1 kB of pages for printing.").arg(bytes.size() / 1024);
     const QString text = QString::fromStdString(bytes);
     qsizetype end = 0;
-    for (int line = 0; line < lines && end >= 0; ++line)
-        end = text.indexOf(u'\n', end) + 1 > 0 ? text.indexOf(u'\n', end) + 1 : -1;
+    for (int line = 0; line < lines && end >= 0; ++line) {
+        const qsizetype next = text.indexOf(u'\n', end);
+        end = next < 0 ? -1 : next + 1;
+    }
     return end < 0 || end == text.size() ? text : text.left(end) + QStringLiteral("…");
 }
 

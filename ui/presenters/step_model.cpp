@@ -48,7 +48,7 @@ QString sentenceOf(StepReason reason) {
         case StepReason::NoViews:
             return StepModel::tr("scan a view first");
         case StepReason::PatchesNotPlaced:
-            return StepModel::tr("some patches are not placed yet");
+            return StepModel::tr("patches are not placed yet");
         case StepReason::FewViews:
             return StepModel::tr("look from further sides");
         case StepReason::ModulesNotPlaced:

@@ -286,6 +286,10 @@ void MainWindow::buildToolBar() {
     save->setShortcut(QKeySequence::Save);
     save->setToolTip(tr("Save what was measured and decided as a recording (a .skinrec folder)"));
     connect(save, &QAction::triggered, this, [this] { this->save(false); });
+    auto* saveAs = bar->addAction(tr("Save as …"));
+    saveAs->setShortcut(QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S));
+    saveAs->setToolTip(tr("Save in another place, and go on there"));
+    connect(saveAs, &QAction::triggered, this, [this] { this->save(true); });
     bar->addSeparator();
     QUndoStack& undo = workbench_.session().undoStack();
     auto* undoAction = undo.createUndoAction(this, tr("Undo"));
@@ -328,6 +332,8 @@ void MainWindow::openRecording(const QString& directory) {
 }
 
 void MainWindow::offerKept(const SessionKeeper& keeper) {
+    connect(&keeper, &SessionKeeper::failed, this,
+            [this](const QString& why) { problems_.setNotice(why, Step::Connect); });
     const auto sessions = keeper.kept();
     if (sessions.empty())
         return;
@@ -369,7 +375,7 @@ void MainWindow::refresh() {
     back_->setVisible(row > 0);
     if (row > 0)
         back_->setText(tr("‹ %1").arg(nameOf(kSteps.at(row - 1))));
-    const bool hasNext = row + 1 < kSteps.size() && pages_.at(row + 1) != nullptr;
+    const bool hasNext = row + 1 < kSteps.size();
     next_->setVisible(hasNext);
     if (hasNext) {
         next_->setText(tr("%1 ›").arg(nameOf(kSteps.at(row + 1))));

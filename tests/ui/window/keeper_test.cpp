@@ -39,6 +39,23 @@ TEST(Keeper, WhatWasNotSavedIsOfferedAndGoesOnWhereItEnded) {
     EXPECT_TRUE(QDir(keeper.directory()).exists());
 }
 
+TEST(Keeper, OpeningAnotherRecordingKeepsWhatWasNotSavedBefore) {
+    const QTemporaryDir folder;
+    DrivenWindow driven;
+    SessionKeeper keeper(driven.session(), folder.path());
+    ASSERT_TRUE(driven.connectSkin());
+    ASSERT_TRUE(driven.capturePoses(2));
+    const QString before = keeper.directory();
+    ASSERT_TRUE(driven.waitFor([&] { return QDir(before).exists(QStringLiteral("recording.json")); }));
+    QString opened;
+    QObject::connect(&driven.session(), &Session::opened, &keeper, [&](const QString& what) { opened = what; });
+    driven.window.openRecording(QStringLiteral(SKINCAL_TEST_DATA "/recordings/flat-detections.skinrec"));
+    ASSERT_TRUE(driven.waitFor([&] { return !opened.isEmpty(); }));
+    EXPECT_NE(keeper.directory(), before);
+    ASSERT_EQ(keeper.kept().size(), 1U);
+    EXPECT_EQ(keeper.kept().front().directory, before);
+}
+
 TEST(Keeper, WhatWasSavedIsNotKept) {
     const QTemporaryDir folder;
     const QTemporaryDir target;

@@ -154,8 +154,10 @@ std::vector<Selection> selectCandidates(const std::vector<SightingCandidates>& s
         }
         selections[s].candidate = best;
         for (std::size_t k = 0; k < poses.size(); ++k) {
-            const bool asGood = votes[s][k] > votes[s][best] - 0.25;
-            if (k != best && asGood && poses[k].cost < options.decisiveCostRatio * poses[best].cost + 1e-12)
+            if (k == best || votes[s][k] <= votes[s][best] - 0.25)
+                continue;
+            selections[s].rivals.push_back(k);
+            if (poses[k].cost < options.decisiveCostRatio * poses[best].cost + 1e-12)
                 selections[s].undecided = true;
         }
     }

@@ -27,6 +27,8 @@ struct SelectionOptions {
 struct Selection {
     std::optional<std::size_t> candidate;  ///< which of the poses, or none that fits the rest
     bool undecided = false;                ///< two candidates remain and nothing tells them apart
+    /// Other candidates that nothing but the picture itself speaks against.
+    std::vector<std::size_t> rivals{};
 };
 
 /// Decides between the candidates of every sighting by what else is known.

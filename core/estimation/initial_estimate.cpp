@@ -142,6 +142,16 @@ std::vector<std::size_t> gravityGroups(const Work& run) {
     return groups;
 }
 
+/// Whether a pose that explains a picture worse than another would be as good with a shape that is off by what shapes
+/// from gravity are: with s what that makes in pixels, half the difference of their chi-squared is small enough.
+bool isWithinReach(const Work& run, const SightingCandidates& sighting, std::size_t rival, std::size_t best) {
+    constexpr double kFar = 50;
+    const PatchPose& pose = sighting.poses[best];
+    const double s = run.options.pose.shapeSigma * run.measurements->camera.fx / pose.T_v_o.translation().z();
+    const double more = sighting.poses[rival].cost - pose.cost;
+    return static_cast<double>(pose.inliers.size()) * more < 2 * kFar * s * s;
+}
+
 /// Where nothing else tells two poses of a view apart (one flat patch alone in the picture), the likelier stands in
 /// and the other is kept, for the adjustment to decide.
 std::vector<ViewAlternative> placeUndecided(Work& run, std::vector<Selection> selections) {
@@ -157,16 +167,26 @@ std::vector<ViewAlternative> placeUndecided(Work& run, std::vector<Selection> se
     std::vector<bool> standsIn(run.body.T_r_v.size(), false);
     for (std::size_t s = 0; s < run.candidates.size(); ++s) {
         const SightingCandidates& sighting = run.candidates[s];
-        if (!selections[s].undecided || !run.body.T_r_o[sighting.patch])
+        if (!run.body.T_r_o[sighting.patch])
             continue;
+        const auto placeOf = [&](std::size_t candidate) -> Isometry3d {
+            return *run.body.T_r_o[sighting.patch] * sighting.poses[candidate].T_v_o.inverse();
+        };
+        if (!selections[s].undecided) {
+            for (const std::size_t rival : selections[s].rivals) {
+                if (isWithinReach(run, sighting, rival, *selections[s].candidate))
+                    alternatives.push_back({sighting.view, placeOf(rival), sighting.patch});
+            }
+            continue;
+        }
         auto& T_r_v = run.body.T_r_v[sighting.view];
         for (std::size_t k = 0; k < sighting.poses.size(); ++k) {
-            const Isometry3d place = *run.body.T_r_o[sighting.patch] * sighting.poses[k].T_v_o.inverse();
+            const Isometry3d place = placeOf(k);
             if (!T_r_v) {
                 T_r_v = place;
                 standsIn[sighting.view] = true;
             } else if (standsIn[sighting.view] || selections[s].candidate != k) {
-                alternatives.push_back({sighting.view, place});
+                alternatives.push_back({sighting.view, place, sighting.patch});
             }
         }
     }

@@ -8,6 +8,7 @@
 #include "core/estimation/alternatives.h"
 #include "core/estimation/noise_findings.h"
 #include "core/estimation/stage_clock.h"
+#include "core/estimation/view_hypotheses.h"
 #include "core/estimation/wrong_links.h"
 
 namespace skincal {
@@ -61,19 +62,15 @@ tl::expected<void, CalibrationError> refineAndTakeOut(BodySolution& solution, So
 
 /// What the sturdy method's weights said of views that could stand in two places, said again by the weights that the
 /// residuals gave. @return whether a view stands elsewhere now.
-tl::expected<bool, CalibrationError> settleViewsAgain(BodySolution& solution, const RunContext& context) {
+tl::expected<bool, CalibrationError> settleViewsAgain(BodySolution& solution, const JointMethodOptions& options,
+                                                      const RunContext& context) {
     if (solution.alternatives.empty())
         return false;
     StageClock clock("views that could stand elsewhere");
-    auto settled =
-        settleViews(usedMeasurements(solution), solution.solved, solution.alternatives, solution.weights, context);
-    if (!settled)
-        return tl::unexpected(settled.error());
-    solution.estimate.stages.push_back(clock.stop());
-    solution.solved = std::move(settled->state);
-    solution.alternatives = std::move(settled->alternatives);
-    solution.estimate.undecidedViews = std::move(settled->undecided);
-    return settled->changed;
+    auto moved = settleViewsByLikelihood(solution, options.refinement, context);
+    if (moved)
+        solution.estimate.stages.push_back(clock.stop());
+    return moved;
 }
 
 /// One solution with the links as they are known, suspects taken out.
@@ -90,7 +87,7 @@ tl::expected<BodySolution, CalibrationError> solveOnce(const Measurements& measu
     dropWhatNothingHolds(*solution);
     if (const auto refined = refineAndTakeOut(*solution, history, options, context); !refined)
         return tl::unexpected(refined.error());
-    const auto moved = settleViewsAgain(*solution, context);
+    const auto moved = settleViewsAgain(*solution, options, context);
     if (!moved)
         return tl::unexpected(moved.error());
     if (*moved) {

@@ -9,8 +9,6 @@ namespace {
 
 /// Costs nearer than this (in log likelihood) leave the choice open: odds of 400, as weights come from few residuals.
 constexpr double kDecisive = 6.0;
-/// And farther than this settle it with any weights: noise of 0.3 px taken for 0.03 px makes a cost a hundredfold.
-constexpr double kSettled = 300.0;
 
 }  // namespace
 
@@ -39,14 +37,17 @@ tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& 
         auto result = adjusted(other);
         if (!result && result.error().code == ErrorCode::Cancelled)
             return tl::unexpected(result.error());
-        if (!result)
+        if (!result) {
+            settled.alternatives.push_back(alternative);
             continue;
+        }
         const double more = best ? result->summary.finalCost - best->summary.finalCost : 0;
         if (best && std::abs(more) < kDecisive)
             undecided.insert(alternative.view);
         const bool better = !best || more < 0;
-        if (std::abs(more) < kSettled)
-            settled.alternatives.push_back(better ? ViewAlternative{alternative.view, *standing} : alternative);
+        settled.alternatives.push_back(alternative);
+        if (better)
+            settled.alternatives.back().T_r_v = *standing;
         if (better) {
             settled.state = std::move(other);
             settled.changed = true;

@@ -86,6 +86,7 @@ TEST(SelectCandidates, APictureThatIsMuchBetterDecidesAlone) {
     const Selection decided = selectCandidates(flips.sightings, {std::nullopt})[0];
     EXPECT_EQ(decided.candidate, 0U);
     EXPECT_FALSE(decided.undecided);
+    EXPECT_EQ(decided.rivals, std::vector<std::size_t>{1}) << "only the picture speaks against it";
     SelectionOptions strict;
     strict.decisiveCostRatio = 5;
     EXPECT_TRUE(selectCandidates(flips.sightings, {std::nullopt}, strict)[0].undecided);

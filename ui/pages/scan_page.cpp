@@ -1,13 +1,11 @@
 #include "ui/pages/scan_page.h"
 
 #include <QComboBox>
-#include <QHeaderView>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QSortFilterProxyModel>
 #include <QSplitter>
-#include <QTableView>
 
+#include "ui/pages/detection_table.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/picture_view.h"
 
@@ -16,23 +14,28 @@ namespace {
 
 using Phase = ScanRun::Phase;
 
-constexpr int kCrop_px = 84;  // on the screen
-
 /// On a picture, which is dark whatever the theme.
 const QColor kUsed("#56c8ff");
 const QColor kSetAside("#ffb020");
 
+const QColor kStray("#9aa0aa");
+
 /// The first entry of the list of views: what the camera sees now.
 constexpr int kLive = 0;
 
-QLabel* cropLabel(const QString& name) {
-    auto* label = new QLabel;
-    label->setFixedSize(kCrop_px, kCrop_px);
-    label->setAlignment(Qt::AlignCenter);
-    label->setFrameShape(QFrame::StyledPanel);
-    label->setAccessibleName(name);
-    label->setToolTip(name);
-    return label;
+/// The fainter the spot, the fainter its mark.
+std::vector<PictureMark> liveMarks(const std::vector<LiveSpot>& spots) {
+    constexpr double kStrong = 60;  // grey levels
+    std::vector<PictureMark> marks;
+    for (const LiveSpot& spot : spots) {
+        QColor colour = spot.module ? kUsed : spot.possible > 0 ? kSetAside : kStray;
+        colour.setAlphaF(static_cast<float>(std::clamp(spot.contrast / kStrong, 0.4, 1.0)));
+        PictureMark mark{QPointF(spot.pixel.x(), spot.pixel.y()), colour, spot.module};
+        mark.isCrossed = spot.possible == 0;
+        mark.isNamed = spot.module.has_value();
+        marks.push_back(std::move(mark));
+    }
+    return marks;
 }
 
 }  // namespace
@@ -49,14 +52,10 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
       pause_(new QPushButton(tr("Pause"))),
       again_(new QPushButton(tr("Scan again"))),
       dropView_(new QPushButton(tr("Drop view"))),
-      accept_(new QPushButton(tr("Accept"))),
-      reject_(new QPushButton(tr("Reject"))),
       progress_(new QProgressBar),
       status_(mutedLabel()),
-      sorted_(new QSortFilterProxyModel(this)),
-      table_(new QTableView),
-      summary_(mutedLabel()),
-      evidence_(mutedLabel()) {
+      table_(new DetectionTable(workbench, presenter)),
+      summary_(mutedLabel()) {
     auto* top = new QHBoxLayout;
     start_->setObjectName(QStringLiteral("scan"));
     start_->setProperty("primary", true);
@@ -85,59 +84,16 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     body().addLayout(row);
 
     picture_->setPlaceholder(tr("No picture yet."));
-    auto* below = new QWidget;
-    auto* columns = new QHBoxLayout(below);
-    columns->setContentsMargins(0, 4, 0, 0);
-    sorted_->setSourceModel(&presenter.detections());
-    sorted_->setSortRole(DetectionModel::kSortRole);
-    table_->setModel(sorted_);
-    table_->setObjectName(QStringLiteral("detections"));
-    table_->setAccessibleName(tr("Modules in this view"));
-    table_->setSortingEnabled(true);
-    table_->sortByColumn(DetectionModel::Residual, Qt::DescendingOrder);
-    table_->setSelectionBehavior(QAbstractItemView::SelectRows);
-    table_->verticalHeader()->hide();
-    table_->horizontalHeader()->setStretchLastSection(true);
-    table_->setWordWrap(false);
-    for (const int column : {DetectionModel::Module, DetectionModel::Residual, DetectionModel::Sigma})
-        table_->setColumnWidth(column, 76);
-    table_->setColumnWidth(DetectionModel::State, 96);
-    columns->addWidget(table_, 1);
-    auto* side = new QVBoxLayout;
-    auto* crops = new QHBoxLayout;
-    const std::array names{tr("lit"), tr("dark"), tr("difference")};
-    for (std::size_t i = 0; i < crops_.size(); ++i) {
-        auto* column = new QVBoxLayout;
-        crops_.at(i) = cropLabel(names.at(i));
-        column->addWidget(crops_.at(i));
-        auto* name = mutedLabel(names.at(i));
-        name->setAlignment(Qt::AlignCenter);
-        column->addWidget(name);
-        crops->addLayout(column);
-    }
-    side->addLayout(crops);
-    side->addWidget(evidence_);
-    side->addStretch();
-    auto* buttons = new QHBoxLayout;
-    accept_->setObjectName(QStringLiteral("accept"));
-    reject_->setObjectName(QStringLiteral("reject"));
-    accept_->setToolTip(tr("Take back that you rejected the selected detections"));
-    reject_->setToolTip(tr("The selected detections are no LEDs of these modules and do not count"));
-    buttons->addWidget(accept_);
-    buttons->addWidget(reject_);
-    side->addLayout(buttons);
-    columns->addLayout(side);
     auto* splitter = new QSplitter(Qt::Vertical);
     splitter->addWidget(picture_);
-    splitter->addWidget(below);
+    splitter->addWidget(table_);
     splitter->setStretchFactor(0, 3);
     splitter->setStretchFactor(1, 2);
     splitter->setChildrenCollapsible(false);
     body().addWidget(splitter, 1);
 
     connect(start_, &QPushButton::clicked, this, [this] {
-        const Phase phase = presenter_.state().phase;
-        if (presenter_.state().isRunning() || phase == Phase::Paused || phase == Phase::Decoding) {
+        if (presenter_.isBusy()) {
             presenter_.cancel();
             return;
         }
@@ -151,8 +107,6 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
         const std::string& view = presenter_.shownView();
         presenter_.setDropped(view, !workbench_.session().decisions().droppedViews.contains(view));
     });
-    connect(accept_, &QPushButton::clicked, this, [this] { presenter_.detections().accept(selected()); });
-    connect(reject_, &QPushButton::clicked, this, [this] { presenter_.detections().reject(selected()); });
     connect(views_, &QComboBox::currentIndexChanged, this, [this](int index) {
         if (index > kLive)
             presenter_.showView(views_->itemText(index).toStdString());
@@ -161,6 +115,7 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
         refresh();
     });
     connect(&presenter, &ScanPresenter::stateChanged, this, &ScanPage::refresh);
+    connect(&presenter, &ScanPresenter::spotsChanged, this, &ScanPage::showMarks);
     connect(&presenter, &ScanPresenter::pictureChanged, this, [this] {
         if (isActive_ && views_->currentIndex() <= kLive) {
             showPicture();
@@ -174,10 +129,12 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
         showMarks();
         refresh();
     });
-    connect(picture_, &PictureView::markClicked, this, &ScanPage::select);
-    connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] {
-        showEvidence();
-        refresh();
+    connect(picture_, &PictureView::markClicked, table_, &DetectionTable::select);
+    connect(table_, &DetectionTable::selectionChanged, this, [this] {
+        const auto modules = table_->selected();
+        picture_->setSelected(modules.size() == 1 ? std::optional(modules.front()) : std::nullopt);
+        if (modules.size() == 1)
+            emit moduleSelected(modules.front());
     });
     listViews();
     refresh();
@@ -187,22 +144,6 @@ void ScanPage::setActive(bool active) {
     isActive_ = active;
     presenter_.setActive(active);
     refresh();
-}
-
-std::vector<ModuleId> ScanPage::selected() const {
-    std::vector<ModuleId> modules;
-    for (const QModelIndex& row : table_->selectionModel()->selectedRows())
-        modules.push_back(
-            presenter_.detections().rows()[static_cast<std::size_t>(sorted_->mapToSource(row).row())].module);
-    return modules;
-}
-
-void ScanPage::select(ModuleId module) {
-    if (const auto row = presenter_.detections().rowOf(module)) {
-        const QModelIndex index = sorted_->mapFromSource(presenter_.detections().index(*row, 0));
-        table_->selectRow(index.row());
-        table_->scrollTo(index);
-    }
 }
 
 void ScanPage::listViews() {
@@ -236,7 +177,10 @@ void ScanPage::showPicture() {
 
 void ScanPage::showMarks() {
     std::vector<PictureMark> marks;
-    if (views_->currentIndex() > kLive) {
+    if (views_->currentIndex() <= kLive) {
+        if (presenter_.isBusy())
+            marks = liveMarks(presenter_.spots());
+    } else {
         for (const DetectionRow& row : presenter_.detections().rows()) {
             if (!row.pixel)
                 continue;
@@ -247,49 +191,9 @@ void ScanPage::showMarks() {
     picture_->setMarks(std::move(marks));
 }
 
-void ScanPage::showEvidence() {
-    for (QLabel* crop : crops_)
-        crop->clear();
-    evidence_->clear();
-    const auto modules = selected();
-    if (modules.size() != 1) {
-        picture_->setSelected(std::nullopt);
-        evidence_->setText(modules.empty() ? tr("Select a module to see what decided.") : QString());
-        return;
-    }
-    picture_->setSelected(modules.front());
-    emit moduleSelected(modules.front());
-    const auto row = presenter_.detections().rowOf(modules.front());
-    const ScannedView* view = workbench_.session().findView(presenter_.shownView());
-    if (!row || view == nullptr)
-        return;
-    const DetectionRow& detection = presenter_.detections().rows()[static_cast<std::size_t>(*row)];
-    if (!detection.pixel) {
-        evidence_->setText(detection.reason);
-        return;
-    }
-    const auto evidence = evidenceOf(*view, detection.module, *detection.pixel);
-    if (!evidence) {
-        evidence_->setText(tr("This view was recorded without pictures."));
-        return;
-    }
-    const std::array pictures{evidence->lit, evidence->dark, evidence->difference};
-    for (std::size_t i = 0; i < pictures.size(); ++i)
-        crops_.at(i)->setPixmap(QPixmap::fromImage(toImage(pictures.at(i)))
-                                    .scaled(kCrop_px - 4, kCrop_px - 4, Qt::KeepAspectRatio, Qt::FastTransformation));
-    QString text = tr("Module %1: %2 grey levels between on and off, centre at (%3, %4) px")
-                       .arg(detection.module.value)
-                       .arg(evidence->contrast, 0, 'f', 0)
-                       .arg(detection.pixel->x(), 0, 'f', 2)
-                       .arg(detection.pixel->y(), 0, 'f', 2);
-    if (!detection.reason.isEmpty())
-        text += tr("; %1").arg(detection.reason);
-    evidence_->setText(text);
-}
-
 void ScanPage::refresh() {
     const ScanRun& state = presenter_.state();
-    const bool isBusy = state.isRunning() || state.phase == Phase::Paused || state.phase == Phase::Decoding;
+    const bool isBusy = presenter_.isBusy();
     const QString obstacle = presenter_.obstacle();
     start_->setText(isBusy ? tr("Cancel") : tr("Scan this view"));
     start_->setEnabled(isBusy || obstacle.isEmpty());
@@ -299,11 +203,11 @@ void ScanPage::refresh() {
     progress_->setVisible(isBusy);
     progress_->setValue(static_cast<int>(100 * presenter_.done()));
     QString text;
-    if (state.phase == Phase::Decoding)
+    if (state.phase == Phase::Decoding) {
         text = tr("Decoding …");
-    else if (state.phase == Phase::Paused)
+    } else if (state.phase == Phase::Paused) {
         text = tr("Paused after picture %1 of %2").arg(state.next).arg(state.frames);
-    else if (state.isRunning()) {
+    } else if (state.isRunning()) {
         text = tr("Picture %1 of %2").arg(state.next + 1).arg(state.frames);
         if (const auto left = presenter_.timeLeft())
             text += tr(", %1 s left").arg(std::chrono::duration<double>(*left).count(), 0, 'f', 0);
@@ -316,6 +220,7 @@ void ScanPage::refresh() {
     status_->setText(text);
 
     const bool isView = views_->currentIndex() > kLive;
+    table_->refresh();
     const auto& rows = presenter_.detections().rows();
     const auto used = std::count_if(rows.begin(), rows.end(),
                                     [](const DetectionRow& row) { return row.state == DetectionRow::State::Used; });
@@ -325,18 +230,6 @@ void ScanPage::refresh() {
     again_->setEnabled(isView && !isBusy && obstacle.isEmpty());
     dropView_->setEnabled(isView && !isBusy);
     dropView_->setText(isDropped ? tr("Take view back") : tr("Drop view"));
-    const auto modules = selected();
-    const auto any = [&](bool isRejected) {
-        return std::any_of(modules.begin(), modules.end(), [&](ModuleId module) {
-            const auto row = presenter_.detections().rowOf(module);
-            if (!row)
-                return false;
-            const DetectionRow& detection = rows[static_cast<std::size_t>(*row)];
-            return detection.pixel.has_value() && detection.isOperatorsWord == isRejected;
-        });
-    };
-    accept_->setEnabled(any(true));
-    reject_->setEnabled(any(false));
 }
 
 }  // namespace skincal

@@ -6,11 +6,10 @@
 class QComboBox;
 class QProgressBar;
 class QPushButton;
-class QSortFilterProxyModel;
-class QTableView;
 
 namespace skincal {
 
+class DetectionTable;
 class PictureView;
 
 class ScanPage : public Page {
@@ -28,9 +27,6 @@ class ScanPage : public Page {
     void listViews();
     void showPicture();
     void showMarks();
-    void showEvidence();
-    void select(ModuleId module);
-    [[nodiscard]] std::vector<ModuleId> selected() const;
 
     Workbench& workbench_;
     ScanPresenter& presenter_;
@@ -40,15 +36,10 @@ class ScanPage : public Page {
     QPushButton* pause_;
     QPushButton* again_;
     QPushButton* dropView_;
-    QPushButton* accept_;
-    QPushButton* reject_;
     QProgressBar* progress_;
     QLabel* status_;
-    QSortFilterProxyModel* sorted_;
-    QTableView* table_;
+    DetectionTable* table_;
     QLabel* summary_;
-    std::array<QLabel*, 3> crops_{};
-    QLabel* evidence_;
     bool isActive_ = false;
 };
 

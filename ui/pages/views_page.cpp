@@ -3,21 +3,23 @@
 #include <QPushButton>
 #include <QSplitter>
 
-#include "ui/presenters/scan_presenter.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/overlap_graph.h"
 #include "ui/widgets/picture_view.h"
+#include "ui/widgets/theme.h"
 
 namespace skincal {
 
-ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, QWidget* parent)
+ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview& preview, QWidget* parent)
     : Page(tr("Move the camera"),
            tr("Look at the body from further places until every patch is placed. Neighbouring views should overlap."),
            parent),
       presenter_(presenter),
       scan_(scan),
+      preview_(preview),
       instruction_(new QLabel),
       reason_(mutedLabel()),
+      hint_(new QLabel),
       move_(new QPushButton(tr("Move the camera there"))),
       scanHere_(new QPushButton(tr("Scan from here"))),
       graph_(new OverlapGraph),
@@ -37,6 +39,13 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, QWidget* pa
     buttons->addWidget(scanHere_);
     buttons->addStretch();
     body().addLayout(buttons);
+    hint_->setObjectName(QStringLiteral("hint"));
+    hint_->setAccessibleName(tr("Whether the picture would do"));
+    hint_->setToolTip(tr(
+        "The patches light up one after the other, and their spots are counted in the picture: a scan from here would "
+        "find about as many"));
+    hint_->setWordWrap(true);
+    body().addWidget(hint_);
     picture_->setPlaceholder(tr("No picture: choose a camera first."));
     auto* splitter = new QSplitter(Qt::Vertical);
     splitter->addWidget(picture_);
@@ -50,16 +59,19 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, QWidget* pa
     connect(scanHere_, &QPushButton::clicked, this, &ViewsPage::scanAsked);
     connect(&presenter, &ViewsPresenter::changed, this, &ViewsPage::refresh);
     connect(&scan, &ScanPresenter::stateChanged, this, &ViewsPage::refresh);
+    connect(&preview, &ViewPreview::changed, this, &ViewsPage::showHint);
     connect(&scan, &ScanPresenter::pictureChanged, this, [this] {
         if (isActive_)
             picture_->setImage(toImage(scan_.picture()));
     });
     refresh();
+    showHint();
 }
 
 void ViewsPage::setActive(bool active) {
     isActive_ = active;
     scan_.setActive(active);
+    preview_.setActive(active);
     refresh();
 }
 
@@ -71,6 +83,21 @@ void ViewsPage::refresh() {
     const QString obstacle = scan_.obstacle();
     scanHere_->setEnabled(obstacle.isEmpty() && !scan_.state().isRunning());
     scanHere_->setStatusTip(obstacle);
+}
+
+void ViewsPage::showHint() {
+    const Theme theme = Theme::current();
+    QString text = preview_.words();
+    hint_->setText(text.isEmpty() ? tr("Looking which patches are in the picture …") : text);
+    const bool isGood = preview_.verdict() == ViewPreview::Verdict::Good;
+    QPalette palette = hint_->palette();
+    palette.setColor(QPalette::WindowText, text.isEmpty() ? theme.muted : isGood ? theme.good : theme.attention);
+    hint_->setPalette(palette);
+    std::vector<PictureMark> marks;
+    for (const SpotInSight& spot : preview_.spots())
+        marks.push_back(
+            {QPointF(spot.pixel.x(), spot.pixel.y()), patchTint(preview_.patches()[spot.patch].patch.value)});
+    picture_->setMarks(std::move(marks));
 }
 
 }  // namespace skincal

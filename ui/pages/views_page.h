@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ui/pages/page.h"
-#include "ui/presenters/views_presenter.h"
+#include "ui/presenters/view_preview.h"
 
 class QPushButton;
 
@@ -9,12 +9,11 @@ namespace skincal {
 
 class OverlapGraph;
 class PictureView;
-class ScanPresenter;
 
 class ViewsPage : public Page {
     Q_OBJECT
   public:
-    ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, QWidget* parent = nullptr);
+    ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview& preview, QWidget* parent = nullptr);
 
     void setActive(bool active) override;
 
@@ -24,11 +23,14 @@ class ViewsPage : public Page {
 
   private:
     void refresh();
+    void showHint();
 
     ViewsPresenter& presenter_;
     ScanPresenter& scan_;
+    ViewPreview& preview_;
     QLabel* instruction_;
     QLabel* reason_;
+    QLabel* hint_;
     QPushButton* move_;
     QPushButton* scanHere_;
     OverlapGraph* graph_;

@@ -2,15 +2,12 @@
 
 #include <QFutureWatcher>
 #include <QObject>
-#include <QTimer>
 #include <atomic>
-#include <chrono>
 
-#include "core/procedure/scan_run.h"
-#include "core/vision/coded_scan.h"
 #include "ui/presenters/detection_model.h"
+#include "ui/presenters/picture_series.h"
 #include "ui/presenters/scan_job.h"
-#include "ui/presenters/workbench.h"
+#include "ui/presenters/spot_watcher.h"
 
 namespace skincal {
 
@@ -22,19 +19,23 @@ class ScanPresenter : public QObject {
     ~ScanPresenter() override;
 
     [[nodiscard]] DetectionModel& detections() { return detections_; }
-    [[nodiscard]] const ScanRun& state() const { return state_; }
+    [[nodiscard]] const ScanRun& state() const { return series_.state(); }
     /// Why a scan can't begin, in a sentence; empty where it can.
     [[nodiscard]] QString obstacle() const;
 
     /// A new view, or in the place of one that is there.
     void start(const std::optional<std::string>& replaced = std::nullopt);
-    void pause();
-    void resume();
-    void cancel();
+    void pause() { series_.pause(); }
+    void resume() { series_.resume(); }
+    void cancel() { series_.cancel(); }
 
-    /// Share of the pictures that are taken, and how long the rest takes at the pace so far; nothing at the beginning.
-    [[nodiscard]] double done() const;
-    [[nodiscard]] std::optional<std::chrono::milliseconds> timeLeft() const;
+    /// From the first light to the new view.
+    [[nodiscard]] bool isBusy() const { return series_.isBusy(); }
+    /// As PictureSeries says.
+    [[nodiscard]] double done() const { return series_.done(); }
+    [[nodiscard]] std::optional<std::chrono::milliseconds> timeLeft() const { return series_.timeLeft(); }
+    /// What the running scan has found so far; the last one's while no other runs.
+    [[nodiscard]] const std::vector<LiveSpot>& spots() const { return watcher_.spots(); }
 
     /// How many pictures a scan takes.
     [[nodiscard]] std::size_t picturesOfAScan() const { return picturesOfAScan_; }
@@ -53,6 +54,7 @@ class ScanPresenter : public QObject {
   signals:
     void stateChanged();
     void pictureChanged();
+    void spotsChanged();
     void shownViewChanged();
     void cameraFailed(const QString& why);
     /// A scan has become a view.
@@ -61,31 +63,25 @@ class ScanPresenter : public QObject {
   private:
     [[nodiscard]] std::vector<ModuleId> modules() const;
     void attachCamera();
-    void attachSkin();
-    void handle(const scan_run::Event& event);
-    void act(const scan_run::Effect& effect);
+    void seriesChanged();
     void decode();
     void decodingFinished();
 
-    using Clock = std::chrono::steady_clock;
     using Outcome = tl::expected<ScanResult, std::string>;
 
     Workbench& workbench_;
     DetectionModel detections_;
-    ScanRun state_;
-    QTimer timer_;
-    LitSets lit_;
-    std::shared_ptr<Pictures> pictures_;
-    std::vector<FrameInfo> frames_;
+    PictureSeries series_;
+    SpotWatcher watcher_;
     std::optional<std::string> replaced_;
     CameraFrame newest_;
-    Clock::time_point began_;
     std::shared_ptr<std::atomic<bool>> cancelled_;
-    QFutureWatcher<std::shared_ptr<Outcome>> watcher_;
+    QFutureWatcher<std::shared_ptr<Outcome>> decoding_;
     std::size_t picturesOfAScan_ = 0;
     bool isActive_ = false;
     bool isCameraRunning_ = false;
     bool isPictureNew_ = false;  ///< taken since the camera was started last
+    bool neededCamera_ = false;  ///< the series, when it last changed
 };
 
 }  // namespace skincal

@@ -20,4 +20,9 @@ void Workbench::setSkinReady(bool ready) {
         emit skinReadyChanged(ready);
 }
 
+void Workbench::setScanning(bool scanning) {
+    if (std::exchange(isScanning_, scanning) != scanning)
+        emit scanningChanged(scanning);
+}
+
 }  // namespace skincal

@@ -63,12 +63,14 @@ class Workbench : public QObject {
 
     /// A scan has the LEDs: whoever else lights one spoils its pictures.
     [[nodiscard]] bool isScanning() const { return isScanning_; }
-    void setScanning(bool scanning) { isScanning_ = scanning; }
+    void setScanning(bool scanning);
 
   signals:
     void skinChosen();
     void cameraChosen();
     void skinReadyChanged(bool ready);
+    /// Before a scan's first light and after its last.
+    void scanningChanged(bool scanning);
 
   private:
     Session session_;

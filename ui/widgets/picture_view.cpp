@@ -73,7 +73,7 @@ void PictureView::paintEvent(QPaintEvent*) {
     painter.setRenderHint(QPainter::Antialiasing);
     for (const PictureMark& mark : marks_) {
         const QPointF at = toWidget(mark.pixel);
-        const bool isSelected = selected_ == mark.module;
+        const bool isSelected = selected_ && selected_ == mark.module;
         painter.setPen(QPen(mark.colour, isSelected ? 3 : 1.6));
         painter.setBrush(Qt::NoBrush);
         const double radius = isSelected ? 11 : 7;
@@ -84,9 +84,9 @@ void PictureView::paintEvent(QPaintEvent*) {
         }
         if (mark.expected)
             painter.drawLine(at, toWidget(*mark.expected));
-        if (isSelected || zoom_ > 1.5) {
+        if (mark.module && (isSelected || mark.isNamed || zoom_ > 1.5)) {
             painter.setPen(mark.colour);
-            painter.drawText(at + QPointF(radius + 2, -radius + 4), QString::number(mark.module.value));
+            painter.drawText(at + QPointF(radius + 2, -radius + 4), QString::number(mark.module->value));
         }
     }
 }
@@ -129,13 +129,13 @@ void PictureView::mouseReleaseEvent(QMouseEvent* event) {
     for (const PictureMark& mark : marks_) {
         const QPointF way = toWidget(mark.pixel) - event->position();
         const double distance = std::hypot(way.x(), way.y());
-        if (distance < best) {
+        if (mark.module && distance < best) {
             best = distance;
             nearest = &mark;
         }
     }
     if (nearest != nullptr)
-        emit markClicked(nearest->module);
+        emit markClicked(*nearest->module);
 }
 
 void PictureView::mouseDoubleClickEvent(QMouseEvent*) {

@@ -13,8 +13,9 @@ namespace skincal {
 struct PictureMark {
     QPointF pixel;
     QColor colour;
-    ModuleId module;
+    std::optional<ModuleId> module{};   ///< what a click on it selects
     bool isCrossed = false;             ///< what does not count
+    bool isNamed = false;               ///< with the module's number beside it, not only where there is room
     std::optional<QPointF> expected{};  ///< where the body has it; a line leads there
 };
 

@@ -48,6 +48,7 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
       pose_(workbench),
       scan_(workbench),
       views_(workbench),
+      preview_(workbench, scan_, views_),
       export_(workbench),
       demo_(workbench),
       steps_(workbench, connection_, scan_),
@@ -111,7 +112,7 @@ void MainWindow::buildPages() {
     auto* posePage = new PosePage(pose_);
     auto* cameraPage = new CameraPage(workbench_, scan_);
     auto* scanPage = new ScanPage(workbench_, scan_);
-    auto* viewsPage = new ViewsPage(views_, scan_);
+    auto* viewsPage = new ViewsPage(views_, scan_, preview_);
     auto* resultPage = new ResultPage(workbench_);
     auto* exportPage = new ExportPage(export_);
     auto* demoPage = new DemoPage(demo_);

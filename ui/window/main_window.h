@@ -10,7 +10,7 @@
 #include "ui/presenters/pose_presenter.h"
 #include "ui/presenters/problem_model.h"
 #include "ui/presenters/step_model.h"
-#include "ui/presenters/views_presenter.h"
+#include "ui/presenters/view_preview.h"
 
 class QAction;
 class QComboBox;
@@ -67,6 +67,7 @@ class MainWindow : public QMainWindow {
     PosePresenter pose_;
     ScanPresenter scan_;
     ViewsPresenter views_;
+    ViewPreview preview_;
     ExportPresenter export_;
     DemoPresenter demo_;
     StepModel steps_;

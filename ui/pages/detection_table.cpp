@@ -1,0 +1,160 @@
+#include "ui/pages/detection_table.h"
+
+#include <QBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QPushButton>
+#include <QSortFilterProxyModel>
+#include <QTableView>
+
+#include "ui/pages/page.h"
+#include "ui/presenters/scan_presenter.h"
+#include "ui/widgets/image_conversion.h"
+
+namespace skincal {
+namespace {
+
+constexpr int kCrop_px = 84;  // on the screen
+constexpr double kFarOff = 3;  // of a detection's own standard deviations
+
+
+QLabel* cropLabel(const QString& name) {
+    auto* label = new QLabel;
+    label->setFixedSize(kCrop_px, kCrop_px);
+    label->setAlignment(Qt::AlignCenter);
+    label->setFrameShape(QFrame::StyledPanel);
+    label->setAccessibleName(name);
+    label->setToolTip(name);
+    return label;
+}
+
+}  // namespace
+
+DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, QWidget* parent)
+    : QWidget(parent),
+      workbench_(workbench),
+      presenter_(presenter),
+      accept_(new QPushButton(tr("Accept"))),
+      reject_(new QPushButton(tr("Reject"))),
+      sorted_(new QSortFilterProxyModel(this)),
+      table_(new QTableView),
+      evidence_(mutedLabel()) {
+    auto* columns = new QHBoxLayout(this);
+    columns->setContentsMargins(0, 4, 0, 0);
+    sorted_->setSourceModel(&presenter.detections());
+    sorted_->setSortRole(DetectionModel::kSortRole);
+    table_->setModel(sorted_);
+    table_->setObjectName(QStringLiteral("detections"));
+    table_->setAccessibleName(tr("Modules in this view"));
+    table_->setSortingEnabled(true);
+    table_->sortByColumn(DetectionModel::Residual, Qt::DescendingOrder);
+    table_->setSelectionBehavior(QAbstractItemView::SelectRows);
+    table_->verticalHeader()->hide();
+    table_->horizontalHeader()->setStretchLastSection(true);
+    table_->setWordWrap(false);
+    for (const int column : {DetectionModel::Module, DetectionModel::Residual, DetectionModel::Sigma})
+        table_->setColumnWidth(column, 76);
+    table_->setColumnWidth(DetectionModel::State, 96);
+    columns->addWidget(table_, 1);
+    auto* side = new QVBoxLayout;
+    auto* crops = new QHBoxLayout;
+    const std::array names{tr("lit"), tr("dark"), tr("difference")};
+    for (std::size_t i = 0; i < crops_.size(); ++i) {
+        auto* column = new QVBoxLayout;
+        crops_.at(i) = cropLabel(names.at(i));
+        column->addWidget(crops_.at(i));
+        auto* name = mutedLabel(names.at(i));
+        name->setAlignment(Qt::AlignCenter);
+        column->addWidget(name);
+        crops->addLayout(column);
+    }
+    side->addLayout(crops);
+    side->addWidget(evidence_);
+    side->addStretch();
+    auto* buttons = new QHBoxLayout;
+    accept_->setObjectName(QStringLiteral("accept"));
+    reject_->setObjectName(QStringLiteral("reject"));
+    accept_->setToolTip(tr("Take back that you rejected the selected detections"));
+    reject_->setToolTip(tr("The selected detections are no LEDs of these modules and do not count"));
+    buttons->addWidget(accept_);
+    buttons->addWidget(reject_);
+    side->addLayout(buttons);
+    columns->addLayout(side);
+    connect(accept_, &QPushButton::clicked, this, [this] { presenter_.detections().accept(selected()); });
+    connect(reject_, &QPushButton::clicked, this, [this] { presenter_.detections().reject(selected()); });
+    connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] {
+        showEvidence();
+        refresh();
+        emit selectionChanged();
+    });
+}
+
+std::vector<ModuleId> DetectionTable::selected() const {
+    std::vector<ModuleId> modules;
+    for (const QModelIndex& row : table_->selectionModel()->selectedRows())
+        modules.push_back(
+            presenter_.detections().rows()[static_cast<std::size_t>(sorted_->mapToSource(row).row())].module);
+    return modules;
+}
+
+void DetectionTable::select(ModuleId module) {
+    if (const auto row = presenter_.detections().rowOf(module)) {
+        const QModelIndex index = sorted_->mapFromSource(presenter_.detections().index(*row, 0));
+        table_->selectRow(index.row());
+        table_->scrollTo(index);
+    }
+}
+
+void DetectionTable::showEvidence() {
+    for (QLabel* crop : crops_)
+        crop->clear();
+    evidence_->clear();
+    const auto modules = selected();
+    if (modules.size() != 1) {
+        evidence_->setText(modules.empty() ? tr("Select a module to see what decided.") : QString());
+        return;
+    }
+    const auto row = presenter_.detections().rowOf(modules.front());
+    const ScannedView* view = workbench_.session().findView(presenter_.shownView());
+    if (!row || view == nullptr)
+        return;
+    const DetectionRow& detection = presenter_.detections().rows()[static_cast<std::size_t>(*row)];
+    if (!detection.pixel) {
+        evidence_->setText(detection.reason);
+        return;
+    }
+    const auto evidence = evidenceOf(*view, detection.module, *detection.pixel);
+    if (!evidence) {
+        evidence_->setText(tr("This view was recorded without pictures."));
+        return;
+    }
+    const std::array pictures{evidence->lit, evidence->dark, evidence->difference};
+    for (std::size_t i = 0; i < pictures.size(); ++i)
+        crops_.at(i)->setPixmap(QPixmap::fromImage(toImage(pictures.at(i)))
+                                    .scaled(kCrop_px - 4, kCrop_px - 4, Qt::KeepAspectRatio, Qt::FastTransformation));
+    QString text = tr("Module %1: %2 grey levels between on and off, centre at (%3, %4) px")
+                       .arg(detection.module.value)
+                       .arg(evidence->contrast, 0, 'f', 0)
+                       .arg(detection.pixel->x(), 0, 'f', 2)
+                       .arg(detection.pixel->y(), 0, 'f', 2);
+    if (!detection.reason.isEmpty())
+        text += tr("; %1").arg(detection.reason);
+    evidence_->setText(text);
+}
+
+void DetectionTable::refresh() {
+    const auto modules = selected();
+    const auto any = [&](bool isRejected) {
+        return std::any_of(modules.begin(), modules.end(), [&](ModuleId module) {
+            const auto row = presenter_.detections().rowOf(module);
+            if (!row)
+                return false;
+            const DetectionRow& detection = presenter_.detections().rows()[static_cast<std::size_t>(*row)];
+            return detection.pixel.has_value() && detection.isOperatorsWord == isRejected;
+        });
+    };
+    accept_->setEnabled(any(true));
+    reject_->setEnabled(any(false));
+}
+
+}  // namespace skincal

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <QObject>
+#include <QTimer>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "core/procedure/scan_run.h"
+#include "core/session/session_data.h"
+#include "core/vision/coded_scan.h"
+#include "ui/presenters/workbench.h"
+
+namespace skincal {
+
+/// Takes a picture of each of a list of lit sets, with the skin and the camera that are on the workbench; the camera
+/// must run meanwhile. What either of them does wrong ends it.
+class PictureSeries : public QObject {
+    Q_OBJECT
+  public:
+    explicit PictureSeries(Workbench& workbench, QObject* parent = nullptr);
+
+    void start(LitSets lit);
+    void pause();
+    void resume();
+    void cancel();
+    void fail(const QString& why);
+    /// What was to be done with the pictures is done.
+    void finish();
+
+    [[nodiscard]] const ScanRun& state() const { return state_; }
+    /// Until finish(), cancel() or a failure.
+    [[nodiscard]] bool isBusy() const { return needsCamera() || state_.phase == ScanRun::Phase::Decoding; }
+    [[nodiscard]] bool needsCamera() const { return state_.isRunning() || state_.phase == ScanRun::Phase::Paused; }
+    [[nodiscard]] const LitSets& lit() const { return lit_; }
+    /// Those that are taken so far, one entry per lit set; null before the first start and after a failure.
+    [[nodiscard]] std::shared_ptr<const Pictures> pictures() const { return pictures_; }
+    [[nodiscard]] const std::vector<FrameInfo>& frames() const { return frames_; }
+
+    /// Share of the pictures that are taken, and how long the rest takes at the pace so far; nothing at the beginning.
+    [[nodiscard]] double done() const;
+    [[nodiscard]] std::optional<std::chrono::milliseconds> timeLeft() const;
+
+  signals:
+    /// Before the first light and after the last.
+    void runningChanged(bool running);
+    void stateChanged();
+    void kept(std::size_t frame);
+    /// All pictures are there: finish() or fail() is to follow.
+    void complete();
+    /// They are of no use any more.
+    void discarded();
+
+  private:
+    void attachCamera();
+    void attachSkin();
+    void handle(const scan_run::Event& event);
+    void act(const scan_run::Effect& effect);
+
+    using Clock = std::chrono::steady_clock;
+
+    Workbench& workbench_;
+    ScanRun state_;
+    QTimer timer_;
+    LitSets lit_;
+    std::shared_ptr<Pictures> pictures_;
+    std::vector<FrameInfo> frames_;
+    CameraFrame newest_;
+    Clock::time_point began_;
+};
+
+}  // namespace skincal

@@ -1,0 +1,192 @@
+#include "ui/presenters/view_preview.h"
+
+#include <algorithm>
+
+namespace skincal {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPause = 300ms;  // between two looks
+constexpr auto kPatience = 3s;
+constexpr std::size_t kEnough = 4;    // LEDs that give a pose
+constexpr std::size_t kOneByOne = 8;  // patches; more are told apart by words
+
+/// Stands for the k-th patch where LiveSpots wants a module.
+ModuleId senderOf(std::size_t patch) {
+    return ModuleId(static_cast<std::uint32_t>(patch) + 1);
+}
+
+/// Which patches to light, picture by picture.
+LitSets lookAt(const std::vector<ModuleId>& senders) {
+    if (senders.size() > kOneByOne)
+        return codedScan(senders, 0);
+    LitSets sets(2);
+    for (const ModuleId sender : senders) {
+        sets[1].push_back({sender, {}});
+        sets.push_back({{sender, {}}});
+    }
+    // Where there is one patch only, what shines all the time would look like it.
+    sets.emplace_back();
+    return sets;
+}
+
+QString listed(const std::vector<PatchInSight>& patches, bool isPlaced) {
+    QStringList names;
+    for (const PatchInSight& patch : patches) {
+        if (patch.isEnough() && patch.isPlaced == isPlaced)
+            names << QString::number(patch.patch.value);
+    }
+    return names.join(QStringLiteral(", "));
+}
+
+}  // namespace
+
+bool PatchInSight::isEnough() const {
+    return seen >= std::min(kEnough, modules);
+}
+
+ViewPreview::ViewPreview(Workbench& workbench, ScanPresenter& scan, const ViewsPresenter& views, QObject* parent)
+    : QObject(parent), workbench_(workbench), scan_(scan), views_(views), series_(workbench) {
+    again_.setSingleShot(true);
+    connect(&again_, &QTimer::timeout, this, &ViewPreview::look);
+    connect(&workbench, &Workbench::scanningChanged, this, [this](bool scanning) {
+        if (scanning)
+            series_.cancel();
+        else if (isActive_)
+            again_.start(kPause);
+    });
+    connect(&series_, &PictureSeries::kept, this,
+            [this](std::size_t frame) { watcher_.add((*series_.pictures())[frame]); });
+    connect(&series_, &PictureSeries::complete, this, [this] {
+        series_.finish();
+        // Should the spots never come: a camera that changed its format meanwhile gives pictures that don't fit.
+        if (isActive_)
+            again_.start(kPatience);
+    });
+    connect(&series_, &PictureSeries::stateChanged, this, [this] {
+        const bool isOver = series_.state().phase == ScanRun::Phase::Failed;
+        if (isOver)
+            forget();
+        if (isActive_ && isOver)
+            again_.start(1s);
+    });
+    connect(&watcher_, &SpotWatcher::changed, this, [this] {
+        if (!isActive_ || watcher_.pictures() < series_.lit().size())
+            return;
+        judge();
+        again_.start(kPause);
+    });
+}
+
+void ViewPreview::setActive(bool active) {
+    if (std::exchange(isActive_, active) == active)
+        return;
+    if (active) {
+        look();
+        return;
+    }
+    again_.stop();
+    series_.cancel();
+    forget();
+}
+
+void ViewPreview::look() {
+    const auto& solution = workbench_.session().solution();
+    if (!isActive_)
+        return;
+    if (!solution || workbench_.isScanning() || !scan_.obstacle().isEmpty()) {
+        again_.start(kPause);
+        return;
+    }
+    asked_.clear();
+    std::vector<ModuleId> senders;
+    std::vector<std::vector<LitModule>> modulesOf;
+    for (const BodyPatch& patch : solution->body.patches) {
+        senders.push_back(senderOf(senders.size()));
+        auto& lit = modulesOf.emplace_back();
+        for (const ModuleId module : patch.modules)
+            lit.push_back({module, {}});
+        asked_.push_back({patch.id, patch.modules.size()});
+    }
+    const LitSets sets = lookAt(senders);
+    LitSets lit;
+    for (const auto& set : sets) {
+        auto& modules = lit.emplace_back();
+        for (const LitModule& sender : set) {
+            const auto& own = modulesOf[sender.module.value - 1];
+            modules.insert(modules.end(), own.begin(), own.end());
+        }
+    }
+    watcher_.begin(std::move(senders), sets);
+    series_.start(std::move(lit));
+}
+
+void ViewPreview::judge() {
+    patches_ = asked_;
+    spots_.clear();
+    std::size_t strays = 0;
+    for (const LiveSpot& spot : watcher_.spots()) {
+        if (!spot.module) {
+            ++strays;
+            continue;
+        }
+        const std::size_t patch = spot.module->value - 1;
+        spots_.push_back({spot.pixel, patch});
+        patches_[patch].seen = std::min(patches_[patch].seen + 1, patches_[patch].modules);
+    }
+    bool isMissing = false;
+    for (PatchInSight& patch : patches_) {
+        for (const PatchState& state : views_.patches())
+            patch.isPlaced = patch.isPlaced || (state.patch == patch.patch && state.isPlaced);
+        isMissing = isMissing || !patch.isPlaced;
+    }
+    const bool seesPlaced = !listed(patches_, true).isEmpty();
+    const bool seesNew = !listed(patches_, false).isEmpty();
+    if (strays > kEnough && strays > spots_.size())
+        verdict_ = Verdict::Moving;
+    else if (!seesPlaced && !seesNew)
+        verdict_ = Verdict::Nothing;
+    else if (!views_.views().empty() && !seesPlaced)
+        verdict_ = Verdict::Unconnected;
+    else if (isMissing && !seesNew)
+        verdict_ = Verdict::NothingNew;
+    else
+        verdict_ = Verdict::Good;
+    emit changed();
+}
+
+void ViewPreview::forget() {
+    patches_.clear();
+    spots_.clear();
+    if (std::exchange(verdict_, Verdict::Unknown) != Verdict::Unknown)
+        emit changed();
+}
+
+QString ViewPreview::words() const {
+    const QString placed = listed(patches_, true);
+    const QString fresh = listed(patches_, false);
+    switch (verdict_) {
+        case Verdict::Unknown:
+            return {};
+        case Verdict::Moving:
+            return tr("Hold the camera still for a moment.");
+        case Verdict::Nothing:
+            return tr("From here no patch is well in the picture: go nearer, or look at the side with the LEDs.");
+        case Verdict::Unconnected:
+            return tr("From here patch %1 is in the picture, but none that is placed: go on until both are.")
+                .arg(fresh);
+        case Verdict::NothingNew:
+            return tr("From here only patch %1 is in the picture, which is placed: it becomes more exact, but no other "
+                      "is joined.")
+                .arg(placed);
+        case Verdict::Good:
+            if (fresh.isEmpty())
+                return tr("Good: patch %1 is in the picture.").arg(placed);
+            return placed.isEmpty() ? tr("Good: patch %1 is in the picture.").arg(fresh)
+                                    : tr("Good: patch %1 joins what is placed (%2).").arg(fresh, placed);
+    }
+    return {};
+}
+
+}  // namespace skincal

@@ -127,7 +127,7 @@ void BoardPresenter::look() {
 void BoardPresenter::search() {
     isSearching_ = true;
     search_.setFuture(QtConcurrent::run(&workers_, [picture = std::exchange(next_, {}), plan = plan(), run = run_] {
-        return std::make_shared<Search>(Search{findBoard(picture, plan), run});
+        return std::make_shared<Search>(Search{picture, findBoard(picture, plan), run});
     }));
 }
 
@@ -136,13 +136,15 @@ void BoardPresenter::searched() {
     const std::shared_ptr<Search> result = search_.result();
     if (isLooking_ && !next_.empty())
         search();
-    if (isLooking_ && result->run == run_)
+    if (isLooking_ && result->run == run_) {
+        sight_.picture = result->picture;
         offer(result->found);
+    }
 }
 
 void BoardPresenter::offer(const Found& found) {
     if (!found) {
-        sight_ = {BoardSight::Kind::Refused, std::nullopt, sentenceOf(found.error(), plan())};
+        sight_ = {BoardSight::Kind::Refused, sight_.picture, std::nullopt, sentenceOf(found.error(), plan())};
         emit sightChanged();
         return;
     }

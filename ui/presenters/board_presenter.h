@@ -17,6 +17,7 @@ namespace skincal {
 struct BoardSight {
     enum class Kind { None, Refused, Kept };
     Kind kind = Kind::None;
+    cv::Mat picture;                ///< that was searched; empty before the first
     std::optional<BoardView> view;  ///< the board, where one was found
     QString sentence;               ///< that it was taken, or why not
 };
@@ -77,6 +78,7 @@ class BoardPresenter : public QObject {
     using Found = tl::expected<BoardView, BoardFault>;
     using Outcome = tl::expected<CameraCalibration, CalibrationError>;
     struct Search {
+        cv::Mat picture;
         Found found;
         std::uint64_t run = 0;
     };

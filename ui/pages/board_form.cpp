@@ -68,7 +68,7 @@ BoardForm::BoardForm(const BoardPlan& plan, QWidget* parent)
 
     auto* form = new QFormLayout(this);
     form->setContentsMargins(0, 0, 0, 0);
-    form->setFieldGrowthPolicy(QFormLayout::ExpandingFieldsGrow);
+    form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
     form->addRow(tr("Kind"), kind_);
     auto* squares = new QHBoxLayout;
     squares->addWidget(columns_, 1);

@@ -57,6 +57,7 @@ CalibrationDialog::CalibrationDialog(BoardPresenter& presenter, const ScanPresen
     showLive();
     showBoards();
     showState();
+    take_->setFocus();
 }
 
 void CalibrationDialog::connectAll() {
@@ -180,9 +181,10 @@ void CalibrationDialog::showBoards() {
     picture_->setCoverage(grid.gridColumns, grid.gridRows, boards.coverage());
     const std::size_t count = boards.views().size();
     progress_->setValue(static_cast<int>(100 * boards.progress()));
-    progress_->setFormat(tr("%1 boards, %p %").arg(count));
+    count_->setText(count == 1 ? tr("1 board") : tr("%1 boards").arg(count));
     const QString wish = presenter_.wish();
-    wish_->setText(wish.isEmpty() ? tr("That is enough. Further boards still help a little.") : wish);
+    wish_->setText(wish.isEmpty() ? tr("That is enough. Further boards still help a little.")
+                                  : tr("<b>Next:</b> %1").arg(wish.toHtmlEscaped()));
     startOver_->setEnabled(count > 0);
     form_->setEnabled(count == 0);
     form_->setToolTip(count == 0 ? QString() : tr("Boards of this kind were taken: start over to change it"));
@@ -190,24 +192,39 @@ void CalibrationDialog::showBoards() {
     showResult();
 }
 
-void CalibrationDialog::showResult() {
-    const auto& calibration = presenter_.calibration();
+void CalibrationDialog::showResiduals() {
     std::vector<ResidualPlot::Cloud> clouds;
-    if (calibration) {
+    if (const auto& calibration = presenter_.calibration()) {
         for (std::size_t i = 0; i < calibration->boards.size(); ++i) {
             ResidualPlot::Cloud cloud{boardTint(i), {}, calibration->boards[i].used};
             for (const Vector2d& r : calibration->boards[i].residuals)
                 cloud.residuals.emplace_back(r.x(), r.y());
             clouds.push_back(std::move(cloud));
         }
+    }
+    plot_->setPlaceholder(tr("How far corners lie from where the lens has them shows here."));
+    plot_->setClouds(std::move(clouds));
+}
+
+void CalibrationDialog::showResult() {
+    showResiduals();
+    const auto& calibration = presenter_.calibration();
+    if (calibration) {
         QStringList reasons;
         for (const CalibrationReason& reason : calibration->reasons)
             reasons << sentenceOf(reason);
         verdict_->setText(tr("<b>%1</b>, rms %2 px%3")
                               .arg(sentenceOf(calibration->trust))
                               .arg(calibration->rms_px, 0, 'f', 2)
-                              .arg(reasons.isEmpty() ? QString() : tr(": %1.").arg(reasons.join(tr("; ")))));
-        figures_->setText(figuresOf(*calibration));
+                              .arg(reasons.isEmpty() ? tr(".") : tr(": %1.").arg(reasons.join(tr("; ")))));
+        QString rows;
+        for (const LensFigure& figure : figuresOf(*calibration)) {
+            rows +=
+                QStringLiteral(
+                    "<tr><td>%1</td><td align=right>&nbsp;&nbsp;%2</td><td align=right>&nbsp;&nbsp;%3</td></tr>")
+                    .arg(figure.name, figure.value, figure.sigma.isEmpty() ? QString() : tr("± %1").arg(figure.sigma));
+        }
+        figures_->setText(QStringLiteral("<table width=\"100%\" cellpadding=\"2\">%1</table>").arg(rows));
     } else {
         const QString failure = presenter_.failure();
         verdict_->setText(!failure.isEmpty() ? failure
@@ -216,8 +233,6 @@ void CalibrationDialog::showResult() {
                                                    .arg(BoardCollectorOptions().views));
         figures_->clear();
     }
-    plot_->setPlaceholder(tr("How far corners lie from where the lens has them shows here."));
-    plot_->setClouds(std::move(clouds));
     use_->setEnabled(presenter_.canAccept());
     use_->setToolTip(calibration && calibration->trust == CalibrationTrust::NotToBeTrusted
                          ? tr("Not before it can be trusted: see above what it lacks")

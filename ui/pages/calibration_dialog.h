@@ -45,6 +45,7 @@ class CalibrationDialog : public QDialog {
     void showSight();
     void showBoards();
     void showResult();
+    void showResiduals();
     void showState();
     void showChosen();
     void say(const QString& mark, const QColor& colour, const QString& sentence);
@@ -58,6 +59,7 @@ class CalibrationDialog : public QDialog {
     BoardPicture* picture_ = nullptr;
     QLabel* sentence_ = nullptr;
     QLabel* wish_ = nullptr;
+    QLabel* count_ = nullptr;
     QProgressBar* progress_ = nullptr;
     QTableView* boards_ = nullptr;
     ResidualPlot* plot_ = nullptr;

@@ -51,17 +51,24 @@ QWidget* CalibrationDialog::buildSight() {
     sentence_ = new QLabel;
     sentence_->setObjectName(QStringLiteral("instruction"));
     sentence_->setTextFormat(Qt::RichText);
+    // Long names of files must not widen the window.
+    sentence_->setWordWrap(true);
+    sentence_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     column->addWidget(sentence_);
     auto* row = new QHBoxLayout;
-    wish_ = mutedLabel();
-    wish_->setWordWrap(false);
+    wish_ = new QLabel;
+    count_ = mutedLabel();
+    count_->setWordWrap(false);
     progress_ = new QProgressBar;
     progress_->setRange(0, 100);
-    progress_->setFixedWidth(240);
+    progress_->setFixedWidth(180);
+    progress_->setTextVisible(false);
+    progress_->setStyleSheet(QStringLiteral("QProgressBar { min-height: 8px; max-height: 8px; }"));
     progress_->setAccessibleName(tr("How complete the boards are"));
     progress_->setToolTip(
         tr("Share of what a good calibration needs: boards at all edges, near and far, turned and tilted"));
     row->addWidget(wish_, 1);
+    row->addWidget(count_);
     row->addWidget(progress_);
     column->addLayout(row);
     return panel;
@@ -85,7 +92,7 @@ QWidget* CalibrationDialog::buildBoards() {
     boards_->verticalHeader()->setDefaultSectionSize(22);
     boards_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
     boards_->horizontalHeader()->setHighlightSections(false);
-    boards_->setMinimumHeight(110);
+    boards_->setMinimumHeight(100);
     column->addWidget(boards_, 1);
     auto* buttons = new QHBoxLayout;
     remove_ = button(tr("Remove board"), "removeBoard", tr("The selected board no longer counts"));
@@ -131,7 +138,9 @@ QWidget* CalibrationDialog::buildResultCard() {
     verdict_->setObjectName(QStringLiteral("lensVerdict"));
     verdict_->setWordWrap(true);
     column->addWidget(verdict_);
-    figures_ = mutedLabel();
+    figures_ = new QLabel;
+    figures_->setAccessibleName(tr("Intrinsics and their standard deviations"));
+    figures_->setToolTip(tr("Each with one standard deviation, as far as the residuals tell"));
     figures_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     column->addWidget(figures_, 1);
     figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);

@@ -1,6 +1,9 @@
 #include "ui/presenters/board_words.h"
 
 #include <QCoreApplication>
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace skincal {
 namespace {
@@ -13,9 +16,12 @@ QString percent(double share) {
     return QString::number(100 * share, 'f', share < 0.01 ? 1 : 0);
 }
 
-QString withSigma(double value, std::optional<double> sigma) {
-    const QString text = QString::number(value, 'f', 1);
-    return sigma ? BoardWords::tr("%1 ± %2").arg(text).arg(*sigma, 0, 'f', *sigma < 0.1 ? 2 : 1) : text;
+/// Both with as many digits as the standard deviation has two of.
+LensFigure figure(const QString& name, double value, std::optional<double> sigma, int digits) {
+    if (!sigma || !(*sigma > 0))
+        return {name, QString::number(value, 'f', digits), {}};
+    const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(*sigma))), 0, 6);
+    return {name, QString::number(value, 'f', decimals), QString::number(*sigma, 'f', decimals)};
 }
 
 }  // namespace
@@ -151,14 +157,29 @@ QString sentenceOf(const CalibrationError& error) {
     }
 }
 
-QString figuresOf(const CameraCalibration& calibration) {
+std::vector<LensFigure> figuresOf(const CameraCalibration& calibration) {
     const CameraModel& camera = calibration.camera;
     const auto sigma = [&](double IntrinsicsSigma::*value) {
         return calibration.sigma ? std::optional((*calibration.sigma).*value) : std::nullopt;
     };
-    return BoardWords::tr("Focal lengths %1 and %2 px, centre (%3, %4) px")
-        .arg(withSigma(camera.fx, sigma(&IntrinsicsSigma::fx)), withSigma(camera.fy, sigma(&IntrinsicsSigma::fy)),
-             withSigma(camera.cx, sigma(&IntrinsicsSigma::cx)), withSigma(camera.cy, sigma(&IntrinsicsSigma::cy)));
+    std::vector<LensFigure> figures{
+        figure(BoardWords::tr("fx, px"), camera.fx, sigma(&IntrinsicsSigma::fx), 1),
+        figure(BoardWords::tr("fy, px"), camera.fy, sigma(&IntrinsicsSigma::fy), 1),
+        figure(BoardWords::tr("cx, px"), camera.cx, sigma(&IntrinsicsSigma::cx), 1),
+        figure(BoardWords::tr("cy, px"), camera.cy, sigma(&IntrinsicsSigma::cy), 1),
+    };
+    static constexpr std::array kNames{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+    for (std::size_t i = 0; i < camera.distortion.size(); ++i) {
+        const bool isFisheye = camera.distortionModel == DistortionModel::Equidistant;
+        const QString name = isFisheye ? QStringLiteral("k%1").arg(i + 1) : QString::fromLatin1(kNames.at(i));
+        const auto spread = calibration.sigma && i < calibration.sigma->distortion.size()
+                                ? std::optional(calibration.sigma->distortion[i])
+                                : std::nullopt;
+        // What was held at zero says nothing.
+        if (camera.distortion[i] != 0 || (spread && *spread > 0))
+            figures.push_back(figure(name, camera.distortion[i], spread, 4));
+    }
+    return figures;
 }
 
 }  // namespace skincal

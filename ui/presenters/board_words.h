@@ -22,7 +22,13 @@ namespace skincal {
 [[nodiscard]] QString sentenceOf(CalibrationTrust trust);
 /// Why there is no calibration.
 [[nodiscard]] QString sentenceOf(const CalibrationError& error);
-/// Focal lengths and centre with a standard deviation each, where there is one.
-[[nodiscard]] QString figuresOf(const CameraCalibration& calibration);
+/// One of the numbers that say what a lens does.
+struct LensFigure {
+    QString name;
+    QString value;
+    QString sigma;  ///< standard deviation; empty where it is not known or the number was held fixed
+};
+/// Focal lengths, centre, then the distortion's coefficients.
+[[nodiscard]] std::vector<LensFigure> figuresOf(const CameraCalibration& calibration);
 
 }  // namespace skincal

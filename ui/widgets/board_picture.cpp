@@ -66,7 +66,7 @@ void BoardPicture::paintCoverage(QPainter& painter) const {
             if (count == 0)
                 continue;
             QColor tint = covered;
-            tint.setAlphaF(static_cast<float>(0.16 + 0.22 * std::min(1.0, count / kMost)));
+            tint.setAlphaF(static_cast<float>(0.10 + 0.18 * std::min(1.0, count / kMost)));
             painter.fillRect(QRectF(picture.left() + w * column, picture.top() + h * row, w, h), tint);
         }
     }

@@ -95,6 +95,8 @@ void ResidualPlot::paintEvent(QPaintEvent*) {
                 painter.drawEllipse(middle + scale * r, radius, radius);
         }
     }
+    painter.setPen(theme.muted);
+    painter.drawText(rect().adjusted(8, 5, -8, -5), Qt::AlignTop | Qt::AlignLeft, tr("Residuals"));
     // Written last and on a ground of its own: points are everywhere.
     const QFontMetricsF metrics(font());
     for (int ring = 1; ring * step <= range; ++ring) {

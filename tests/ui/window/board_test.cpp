@@ -52,6 +52,13 @@ TEST_F(BoardWindow, LeadsFromABoardToIntrinsicsThatCanBeUndone) {
     driven.takePictureOf(*dialog(), "10-board-taking");
     ASSERT_TRUE(driven.waitFor([&] { return taken() >= 14 && canUse(); }));
     driven.takePictureOf(*dialog(), "11-board-done");
+    // As small as it gets.
+    const QSize before_px = dialog()->size();
+    dialog()->resize(dialog()->minimumSizeHint());
+    driven.takePictureOf(*dialog(), "15-board-small");
+    EXPECT_LE(dialog()->width(), 1024);
+    EXPECT_LE(dialog()->height(), 720) << "fits on a small screen";
+    dialog()->resize(before_px);
     // What lies under the mouse is shown and removed.
     auto* table = driven.find<QTableView>("boards");
     table->scrollToTop();

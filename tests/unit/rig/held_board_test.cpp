@@ -27,6 +27,15 @@ std::vector<BoardPlan> plans() {
     return {BoardPlan{}, chess, upright};
 }
 
+/// Before a grey wall.
+cv::Mat pictureOf(const HeldLayer& layer, const CameraModel& camera) {
+    cv::Mat picture(camera.height, camera.width, CV_32F, cv::Scalar(70));
+    cv::Mat part = picture(cv::Rect(layer.corner, layer.cover.size()));
+    part = part.mul(1 - layer.cover) + layer.light;
+    picture.convertTo(picture, CV_8U);
+    return picture;
+}
+
 TEST(HeldBoard, StaysInThePictureAndStillInEveryPlace) {
     const CameraModel camera = simulatedWebcam();
     for (const BoardPlan& plan : plans()) {
@@ -83,12 +92,7 @@ TEST(BoardPainter, CornersAreWhereTheCameraModelHasThem) {
         const HeldBoard board(plan, camera, 0s);
         for (std::size_t place = 0; place < board.places(); ++place) {
             const Isometry3d T_v_b = board.pose(static_cast<int>(place) * (HeldBoard::kStill + HeldBoard::kMove));
-            const HeldLayer layer = painter.paint(plan, std::vector{T_v_b});
-            cv::Mat picture(camera.height, camera.width, CV_32F, cv::Scalar(70));
-            cv::Mat part = picture(cv::Rect(layer.corner, layer.cover.size()));
-            part = part.mul(1 - layer.cover) + layer.light;
-            picture.convertTo(picture, CV_8U);
-            const auto view = findBoard(picture, plan);
+            const auto view = findBoard(pictureOf(painter.paint(plan, std::vector{T_v_b}), camera), plan);
             ASSERT_TRUE(view) << place << ": " << static_cast<int>(view.error().miss);
             double sum = 0;
             for (const BoardCorner& corner : view->corners) {
@@ -103,6 +107,31 @@ TEST(BoardPainter, CornersAreWhereTheCameraModelHasThem) {
         }
     }
     EXPECT_THROW((void)painter.paint({}, std::vector<Isometry3d>(2)), std::logic_error);
+}
+
+TEST(BoardPainter, TheLensFollowsFromThePictures) {
+    const CameraModel camera = simulatedWebcam();
+    BoardPainter painter(camera, 0.9);
+    for (const BoardPlan& plan : plans()) {
+        const HeldBoard board(plan, camera, 0s);
+        std::vector<BoardView> views;
+        for (std::size_t place = 0; place < board.places(); ++place) {
+            const Isometry3d T_v_b = board.pose(static_cast<int>(place) * (HeldBoard::kStill + HeldBoard::kMove));
+            views.push_back(findBoard(pictureOf(painter.paint(plan, std::vector{T_v_b}), camera), plan).value());
+        }
+        const auto result = calibrateCamera(views, plan);
+        ASSERT_TRUE(result);
+        const CameraModel& k = result->camera;
+        const IntrinsicsSigma& s = *result->sigma;
+        EXPECT_LT(result->rms_px, 0.1);
+        constexpr double kSigmas = 3;
+        EXPECT_NEAR(k.fx, camera.fx, kSigmas * s.fx);
+        EXPECT_NEAR(k.fy, camera.fy, kSigmas * s.fy);
+        EXPECT_NEAR(k.cx, camera.cx, kSigmas * s.cx);
+        EXPECT_NEAR(k.cy, camera.cy, kSigmas * s.cy);
+        for (std::size_t i = 0; i < 4; ++i)
+            EXPECT_NEAR(k.distortion[i], camera.distortion[i], kSigmas * s.distortion[i]);
+    }
 }
 
 TEST(SimulatedCamera, ShowsTheBoardThatIsHeldAndSmearsItWhileItMoves) {

@@ -18,7 +18,7 @@ class HeldBoard {
     using Time = std::chrono::microseconds;
 
     static constexpr Time kMove{500'000};  ///< from one place to the next
-    static constexpr Time kStill{400'000};
+    static constexpr Time kStill{500'000};
 
     /// Share of a square that the paper is wider than the squares, on each side.
     static constexpr double kPaper = 0.375;

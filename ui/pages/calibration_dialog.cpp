@@ -1,21 +1,19 @@
 #include "ui/pages/calibration_dialog.h"
 
-#include <QComboBox>
 #include <QFileDialog>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QShortcut>
-#include <QStyle>
 #include <QTableView>
 
-#include "core/formats/files.h"
 #include "ui/pages/board_form.h"
-#include "ui/presenters/board_words.h"
+#include "ui/pages/lens_card.h"
 #include "ui/print/board_pdf.h"
 #include "ui/widgets/board_picture.h"
 #include "ui/widgets/image_conversion.h"
+#include "ui/widgets/primary_button.h"
 #include "ui/widgets/residual_plot.h"
 #include "ui/widgets/theme.h"
 
@@ -27,14 +25,6 @@ std::vector<QPointF> pixelsOf(const BoardView& view) {
     for (const BoardCorner& corner : view.corners)
         pixels.emplace_back(corner.pixel.x(), corner.pixel.y());
     return pixels;
-}
-
-void setPrimary(QPushButton* button, bool primary) {
-    if (button->property("primary").toBool() == primary)
-        return;
-    button->setProperty("primary", primary);
-    button->style()->unpolish(button);
-    button->style()->polish(button);
 }
 
 }  // namespace
@@ -66,16 +56,11 @@ void CalibrationDialog::connectAll() {
             presenter_.setPlan(form_->plan());
         showState();
     });
-    connect(lens_, &QComboBox::currentIndexChanged, this,
-            [this] { presenter_.setLens(static_cast<DistortionModel>(lens_->currentData().toInt())); });
     connect(take_, &QPushButton::clicked, this, &CalibrationDialog::startOrStop);
     connect(print_, &QPushButton::clicked, this, &CalibrationDialog::choosePrint);
-    connect(save_, &QPushButton::clicked, this, &CalibrationDialog::chooseSave);
     connect(startOver_, &QPushButton::clicked, &presenter_, &BoardPresenter::clear);
-    connect(use_, &QPushButton::clicked, this, [this] {
-        presenter_.accept();
-        accept();
-    });
+    connect(lensCard_, &LensCard::used, this, &QDialog::accept);
+    connect(lensCard_, &LensCard::told, this, &CalibrationDialog::tell);
     const auto remove = [this] {
         if (const auto board = chosenBoard())
             presenter_.remove(*board);
@@ -87,13 +72,10 @@ void CalibrationDialog::connectAll() {
     connect(model_, &QAbstractItemModel::rowsInserted, boards_, &QTableView::scrollToBottom);
     connect(&presenter_, &BoardPresenter::sightChanged, this, &CalibrationDialog::showSight);
     connect(&presenter_, &BoardPresenter::boardsChanged, this, &CalibrationDialog::showBoards);
-    connect(&presenter_, &BoardPresenter::calibrationChanged, this, &CalibrationDialog::showResult);
+    connect(&presenter_, &BoardPresenter::calibrationChanged, this, &CalibrationDialog::showResiduals);
     connect(&presenter_, &BoardPresenter::stateChanged, this, &CalibrationDialog::showState);
-    connect(&presenter_, &BoardPresenter::interrupted, this, [this](const QString& why) {
-        note_ = why;
-        isNoteBad_ = true;
-        showSight();
-    });
+    connect(&presenter_, &BoardPresenter::interrupted, this,
+            [this](const QString& why) { tell(tr("Interrupted: %1").arg(why), true); });
     connect(&scan_, &ScanPresenter::pictureChanged, this, &CalibrationDialog::showLive);
 }
 
@@ -116,38 +98,24 @@ void CalibrationDialog::choosePrint() {
 
 void CalibrationDialog::printBoard(const QString& file) {
     const auto written = writeBoardPdf(file.toStdString(), form_->plan());
-    isNoteBad_ = !written;
-    note_ = written ? tr("Written: %1. Print it without scaling and check the ruler.").arg(file) : written.error();
-    showSight();
-}
-
-void CalibrationDialog::chooseSave() {
-    const QStringList kinds{tr("ROS camera_info (*.yaml)"), tr("OpenCV (*.yml)"), tr("Kalibr camchain (*.yaml)")};
-    QString kind = kinds.front();
-    const QString file = QFileDialog::getSaveFileName(this, tr("Save the calibration"), QStringLiteral("camera.yaml"),
-                                                      kinds.join(QStringLiteral(";;")), &kind);
-    if (!file.isEmpty())
-        saveAs(file, static_cast<CameraFileKind>(std::max<qsizetype>(0, kinds.indexOf(kind))));
+    tell(written ? tr("Written: %1. Print it without scaling and check the ruler.").arg(file) : written.error(),
+         !written);
 }
 
 void CalibrationDialog::saveAs(const QString& file, CameraFileKind kind) {
-    if (!presenter_.calibration())
-        return;
-    isNoteBad_ = true;
-    if (const auto text = exportCamera(presenter_.calibration()->camera, kind)) {
-        const auto written = writeFileAtomically(file.toStdString(), *text);
-        isNoteBad_ = !written;
-        note_ = written ? tr("Written: %1").arg(file) : QString::fromStdString(written.error().message());
-    } else {
-        note_ = tr("Kalibr has no such lens: choose another kind of file.");
-    }
-    showSight();
+    lensCard_->saveAs(file, kind);
 }
 
 void CalibrationDialog::showLive() {
     // While it looks, the picture that was searched is shown: the corners are where that has them.
     if (!presenter_.isLooking() || presenter_.sight().picture.empty())
         picture_->setImage(toImage(scan_.picture()));
+}
+
+void CalibrationDialog::tell(const QString& note, bool isBad) {
+    note_ = note;
+    isNoteBad_ = isBad;
+    showSight();
 }
 
 void CalibrationDialog::say(const QString& mark, const QColor& colour, const QString& sentence) {
@@ -189,12 +157,13 @@ void CalibrationDialog::showBoards() {
     form_->setEnabled(count == 0);
     form_->setToolTip(count == 0 ? QString() : tr("Boards of this kind were taken: start over to change it"));
     showChosen();
-    showResult();
+    showResiduals();
 }
 
 void CalibrationDialog::showResiduals() {
     std::vector<ResidualPlot::Cloud> clouds;
-    if (const auto& calibration = presenter_.calibration()) {
+    const auto& calibration = presenter_.calibration();
+    if (calibration) {
         for (std::size_t i = 0; i < calibration->boards.size(); ++i) {
             ResidualPlot::Cloud cloud{boardTint(i), {}, calibration->boards[i].used};
             for (const Vector2d& r : calibration->boards[i].residuals)
@@ -202,44 +171,10 @@ void CalibrationDialog::showResiduals() {
             clouds.push_back(std::move(cloud));
         }
     }
+    // Once there is enough, using it comes next.
+    setPrimary(take_, !(presenter_.canAccept() && presenter_.wish().isEmpty()));
     plot_->setPlaceholder(tr("How far corners lie from where the lens has them shows here."));
     plot_->setClouds(std::move(clouds));
-}
-
-void CalibrationDialog::showResult() {
-    showResiduals();
-    const auto& calibration = presenter_.calibration();
-    if (calibration) {
-        QStringList reasons;
-        for (const CalibrationReason& reason : calibration->reasons)
-            reasons << sentenceOf(reason);
-        verdict_->setText(tr("<b>%1</b>, rms %2 px%3")
-                              .arg(sentenceOf(calibration->trust))
-                              .arg(calibration->rms_px, 0, 'f', 2)
-                              .arg(reasons.isEmpty() ? tr(".") : tr(": %1.").arg(reasons.join(tr("; ")))));
-        QString rows;
-        for (const LensFigure& figure : figuresOf(*calibration)) {
-            rows +=
-                QStringLiteral(
-                    "<tr><td>%1</td><td align=right>&nbsp;&nbsp;%2</td><td align=right>&nbsp;&nbsp;%3</td></tr>")
-                    .arg(figure.name, figure.value, figure.sigma.isEmpty() ? QString() : tr("± %1").arg(figure.sigma));
-        }
-        figures_->setText(QStringLiteral("<table width=\"100%\" cellpadding=\"2\">%1</table>").arg(rows));
-    } else {
-        const QString failure = presenter_.failure();
-        verdict_->setText(!failure.isEmpty() ? failure
-                                             : tr("A first result comes with %1 boards, a good one with %2 or more.")
-                                                   .arg(BoardPresenter::kLeastBoards)
-                                                   .arg(BoardCollectorOptions().views));
-        figures_->clear();
-    }
-    use_->setEnabled(presenter_.canAccept());
-    use_->setToolTip(calibration && calibration->trust == CalibrationTrust::NotToBeTrusted
-                         ? tr("Not before it can be trusted: see above what it lacks")
-                         : tr("Scans are decoded with these intrinsics from now on; can be undone"));
-    save_->setEnabled(calibration != nullptr);
-    setPrimary(use_, presenter_.wish().isEmpty() && presenter_.canAccept());
-    setPrimary(take_, !use_->property("primary").toBool());
 }
 
 void CalibrationDialog::showState() {

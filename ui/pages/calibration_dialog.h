@@ -5,17 +5,16 @@
 #include "core/formats/camera_export.h"
 #include "ui/presenters/board_model.h"
 
-class QComboBox;
 class QLabel;
 class QProgressBar;
 class QPushButton;
 class QTableView;
-class QVBoxLayout;
 
 namespace skincal {
 
 class BoardForm;
 class BoardPicture;
+class LensCard;
 class ResidualPlot;
 
 /// Calibrates the camera from a board: what it looks like, what the camera sees of it, boards that were taken, and the
@@ -36,18 +35,16 @@ class CalibrationDialog : public QDialog {
     [[nodiscard]] QWidget* buildBoards();
     [[nodiscard]] QWidget* buildSide();
     [[nodiscard]] QWidget* buildBoardCard();
-    [[nodiscard]] QWidget* buildResultCard();
     void connectAll();
     void startOrStop();
     void choosePrint();
-    void chooseSave();
     void showLive();
     void showSight();
     void showBoards();
-    void showResult();
     void showResiduals();
     void showState();
     void showChosen();
+    void tell(const QString& note, bool isBad);
     void say(const QString& mark, const QColor& colour, const QString& sentence);
     [[nodiscard]] std::optional<std::size_t> chosenBoard() const;
 
@@ -55,7 +52,7 @@ class CalibrationDialog : public QDialog {
     const ScanPresenter& scan_;
     BoardModel* model_;
     BoardForm* form_ = nullptr;
-    QComboBox* lens_ = nullptr;
+    LensCard* lensCard_ = nullptr;
     BoardPicture* picture_ = nullptr;
     QLabel* sentence_ = nullptr;
     QLabel* wish_ = nullptr;
@@ -63,14 +60,10 @@ class CalibrationDialog : public QDialog {
     QProgressBar* progress_ = nullptr;
     QTableView* boards_ = nullptr;
     ResidualPlot* plot_ = nullptr;
-    QLabel* verdict_ = nullptr;
-    QLabel* figures_ = nullptr;
     QPushButton* take_ = nullptr;
     QPushButton* print_ = nullptr;
     QPushButton* startOver_ = nullptr;
     QPushButton* remove_ = nullptr;
-    QPushButton* use_ = nullptr;
-    QPushButton* save_ = nullptr;
     QString note_;  ///< what there is to say while nobody looks
     bool isNoteBad_ = false;
 };

@@ -1,6 +1,5 @@
 // What the dialog is made of; what it does is in calibration_dialog.cpp.
 
-#include <QComboBox>
 #include <QFrame>
 #include <QHeaderView>
 #include <QLabel>
@@ -11,6 +10,7 @@
 
 #include "ui/pages/board_form.h"
 #include "ui/pages/calibration_dialog.h"
+#include "ui/pages/lens_card.h"
 #include "ui/pages/page.h"
 #include "ui/widgets/board_picture.h"
 #include "ui/widgets/residual_plot.h"
@@ -25,18 +25,6 @@ QPushButton* button(const QString& text, const char* name, const QString& why) {
     // Return in a field must not press any of them.
     button->setAutoDefault(false);
     return button;
-}
-
-QFrame* card(const QString& title, QVBoxLayout*& column) {
-    auto* frame = new QFrame;
-    frame->setObjectName(QStringLiteral("card"));
-    column = new QVBoxLayout(frame);
-    column->setContentsMargins(12, 10, 12, 12);
-    column->setSpacing(8);
-    auto* heading = new QLabel(title);
-    heading->setObjectName(QStringLiteral("instruction"));
-    column->addWidget(heading);
-    return frame;
 }
 
 }  // namespace
@@ -92,7 +80,7 @@ QWidget* CalibrationDialog::buildBoards() {
     boards_->verticalHeader()->setDefaultSectionSize(22);
     boards_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
     boards_->horizontalHeader()->setHighlightSections(false);
-    boards_->setMinimumHeight(100);
+    boards_->setMinimumSize(350, 100);
     column->addWidget(boards_, 1);
     auto* buttons = new QHBoxLayout;
     remove_ = button(tr("Remove board"), "removeBoard", tr("The selected board no longer counts"));
@@ -108,8 +96,14 @@ QWidget* CalibrationDialog::buildBoards() {
 }
 
 QWidget* CalibrationDialog::buildBoardCard() {
-    QVBoxLayout* column = nullptr;
-    QFrame* frame = card(tr("Board"), column);
+    auto* frame = new QFrame;
+    frame->setObjectName(QStringLiteral("card"));
+    auto* column = new QVBoxLayout(frame);
+    column->setContentsMargins(12, 10, 12, 12);
+    column->setSpacing(8);
+    auto* heading = new QLabel(tr("Board"));
+    heading->setObjectName(QStringLiteral("instruction"));
+    column->addWidget(heading);
     form_ = new BoardForm(presenter_.plan());
     column->addWidget(form_);
     print_ = button(tr("Print board …"), "printBoard",
@@ -121,36 +115,6 @@ QWidget* CalibrationDialog::buildBoardCard() {
     return frame;
 }
 
-QWidget* CalibrationDialog::buildResultCard() {
-    QVBoxLayout* column = nullptr;
-    QFrame* frame = card(tr("Lens"), column);
-    lens_ = new QComboBox;
-    lens_->setObjectName(QStringLiteral("lens"));
-    lens_->setAccessibleName(tr("Kind of lens"));
-    lens_->setToolTip(
-        tr("More coefficients than a lens needs make it worse where no board was: take the first that "
-           "gives small residuals"));
-    lens_->addItem(tr("Ordinary (plumb_bob)"), static_cast<int>(DistortionModel::PlumbBob));
-    lens_->addItem(tr("Wide angle (rational)"), static_cast<int>(DistortionModel::RationalPolynomial));
-    lens_->addItem(tr("Fisheye (equidistant)"), static_cast<int>(DistortionModel::Equidistant));
-    column->addWidget(lens_);
-    verdict_ = new QLabel;
-    verdict_->setObjectName(QStringLiteral("lensVerdict"));
-    verdict_->setWordWrap(true);
-    column->addWidget(verdict_);
-    figures_ = new QLabel;
-    figures_->setAccessibleName(tr("Intrinsics and their standard deviations"));
-    figures_->setToolTip(tr("Each with one standard deviation, as far as the residuals tell"));
-    figures_->setTextInteractionFlags(Qt::TextSelectableByMouse);
-    column->addWidget(figures_, 1);
-    figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-    use_ = button(tr("Use this calibration"), "useCalibration", {});
-    save_ = button(tr("Save as …"), "saveCalibration", tr("A file for ROS, OpenCV or Kalibr"));
-    column->addWidget(use_);
-    column->addWidget(save_);
-    return frame;
-}
-
 QWidget* CalibrationDialog::buildSide() {
     auto* panel = new QWidget;
     panel->setFixedWidth(310);
@@ -158,7 +122,8 @@ QWidget* CalibrationDialog::buildSide() {
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(10);
     column->addWidget(buildBoardCard());
-    column->addWidget(buildResultCard(), 1);
+    lensCard_ = new LensCard(presenter_);
+    column->addWidget(lensCard_, 1);
     auto* row = new QHBoxLayout;
     QPushButton* close = button(tr("Close"), "closeCalibration", tr("Boards stay for the next time"));
     connect(close, &QPushButton::clicked, this, &QDialog::reject);

@@ -19,7 +19,7 @@ bool isSame(const CameraModel& a, const CameraModel& b) {
 
 }  // namespace
 
-BoardPresenter::BoardPresenter(Workbench& workbench, const ScanPresenter& scan, QObject* parent)
+BoardPresenter::BoardPresenter(Workbench& workbench, ScanPresenter& scan, QObject* parent)
     : QObject(parent), workbench_(workbench), scan_(scan) {
     // One that looks for boards, one that calibrates; neither waits for what else the program computes.
     workers_.setMaxThreadCount(2);
@@ -62,6 +62,7 @@ void BoardPresenter::start() {
         return;
     isLooking_ = true;
     sight_ = {};
+    scan_.setActive(true);
     if (workbench_.hands && workbench_.hands->holdBoard)
         workbench_.hands->holdBoard(plan());
     emit stateChanged();

@@ -30,8 +30,8 @@ class BoardPresenter : public QObject {
   public:
     static constexpr std::size_t kLeastBoards = 5;
 
-    /// Looks at the pictures that `scan` shows, while it is active.
-    BoardPresenter(Workbench& workbench, const ScanPresenter& scan, QObject* parent = nullptr);
+    /// Looks at the pictures that `scan` shows.
+    BoardPresenter(Workbench& workbench, ScanPresenter& scan, QObject* parent = nullptr);
     /// Cancels what is under way and waits for it: a tenth of a second as a rule.
     ~BoardPresenter() override;
 
@@ -42,6 +42,7 @@ class BoardPresenter : public QObject {
     void setLens(DistortionModel lens);
 
     [[nodiscard]] bool isLooking() const { return isLooking_; }
+    /// Starts the camera, too, where it stands still: it may have been unplugged.
     void start();
     /// Boards stay.
     void stop();
@@ -97,7 +98,7 @@ class BoardPresenter : public QObject {
     void changeBoards();
 
     Workbench& workbench_;
-    const ScanPresenter& scan_;
+    ScanPresenter& scan_;
     BoardCollector collector_{BoardPlan{}};
     DistortionModel lens_ = DistortionModel::PlumbBob;
     BoardSight sight_;

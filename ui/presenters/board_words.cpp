@@ -16,12 +16,17 @@ QString percent(double share) {
     return QString::number(100 * share, 'f', share < 0.01 ? 1 : 0);
 }
 
-/// Both with as many digits as the standard deviation has two of.
-LensFigure figure(const QString& name, double value, std::optional<double> sigma, int digits) {
+QString fixed(double value, int decimals) {
+    // A hyphen is hard to see before digits.
+    return QString::number(value, 'f', decimals).replace(u'-', QChar(0x2212));
+}
+
+/// Both with as many decimals as show two digits of the standard deviation.
+LensFigure figure(const QString& name, double value, std::optional<double> sigma, int decimals) {
     if (!sigma || !(*sigma > 0))
-        return {name, QString::number(value, 'f', digits), {}};
-    const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(*sigma))), 0, 6);
-    return {name, QString::number(value, 'f', decimals), QString::number(*sigma, 'f', decimals)};
+        return {name, fixed(value, decimals), {}};
+    const int some = std::clamp(1 - static_cast<int>(std::floor(std::log10(*sigma))), 0, 6);
+    return {name, fixed(value, some), fixed(*sigma, some)};
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(HeldBoard, StaysInThePictureAndStillInEveryPlace) {
             EXPECT_EQ(board.pose(begin).matrix(), board.pose(begin + HeldBoard::kStill).matrix());
             EXPECT_TRUE(board.isStill(begin + HeldBoard::kStill));
             EXPECT_FALSE(board.isStill(begin + HeldBoard::kStill + 1ms));
-            EXPECT_TRUE(isRigid(board.pose(begin + 600ms)));
+            EXPECT_TRUE(isRigid(board.pose(begin + HeldBoard::kStill + 200ms)));
             const double m = HeldBoard::kPaper * plan.square;
             for (const double x : {-m, plan.width() + m}) {
                 for (const double y : {-m, plan.height() + m}) {

@@ -1,5 +1,6 @@
 #include "ui/pages/calibration_dialog.h"
 
+#include <QEvent>
 #include <QFileDialog>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -71,7 +72,11 @@ void CalibrationDialog::connectAll() {
     connect(boards_->selectionModel(), &QItemSelectionModel::selectionChanged, this, &CalibrationDialog::showChosen);
     connect(model_, &QAbstractItemModel::rowsInserted, boards_, &QTableView::scrollToBottom);
     connect(&presenter_, &BoardPresenter::sightChanged, this, &CalibrationDialog::showSight);
-    connect(&presenter_, &BoardPresenter::boardsChanged, this, &CalibrationDialog::showBoards);
+    connect(&presenter_, &BoardPresenter::boardsChanged, this, [this] {
+        // What was written while it looks has been read by now.
+        note_.clear();
+        showBoards();
+    });
     connect(&presenter_, &BoardPresenter::calibrationChanged, this, &CalibrationDialog::showResiduals);
     connect(&presenter_, &BoardPresenter::stateChanged, this, &CalibrationDialog::showState);
     connect(&presenter_, &BoardPresenter::interrupted, this,
@@ -82,6 +87,13 @@ void CalibrationDialog::connectAll() {
 void CalibrationDialog::done(int result) {
     presenter_.stop();
     QDialog::done(result);
+}
+
+void CalibrationDialog::changeEvent(QEvent* event) {
+    QDialog::changeEvent(event);
+    // The sentence's mark has the theme's colours.
+    if (event->type() == QEvent::PaletteChange && sentence_ != nullptr)
+        showSight();
 }
 
 void CalibrationDialog::startOrStop() {

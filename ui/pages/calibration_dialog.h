@@ -30,6 +30,9 @@ class CalibrationDialog : public QDialog {
 
     void done(int result) override;
 
+  protected:
+    void changeEvent(QEvent* event) override;
+
   private:
     [[nodiscard]] QWidget* buildSight();
     [[nodiscard]] QWidget* buildBoards();

@@ -50,7 +50,7 @@ QString planFault(const BoardPlan& plan) {
 QString sentenceOf(const BoardFault& fault, const BoardPlan& plan) {
     switch (fault.miss) {
         case BoardMiss::TooFewCorners:
-            return BoardWords::tr("Only %1 corners show, %2 are needed: more of the board into the picture.")
+            return BoardWords::tr("Corners found: %1 of at least %2. Bring it into the picture, nearer or into focus.")
                 .arg(fault.found)
                 .arg(fault.needed);
         case BoardMiss::TooSmall:
@@ -59,8 +59,8 @@ QString sentenceOf(const BoardFault& fault, const BoardPlan& plan) {
                 .arg(fault.needed, 0, 'f', 0);
         case BoardMiss::Blurred:
             return BoardWords::tr("Blurred by %1 pixels, %2 at most: hold still, focus, more light or less exposure.")
-                .arg(fault.found, 0, 'f', 1)
-                .arg(fault.needed, 0, 'f', 1);
+                .arg(fault.found, 0, 'f', 2)
+                .arg(fault.needed, 0, 'f', 2);
         default:
             return plan.kind == BoardKind::Chessboard
                        ? BoardWords::tr("No such board in the picture: a chessboard must show as a whole.")

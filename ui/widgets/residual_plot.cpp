@@ -101,10 +101,10 @@ void ResidualPlot::paintEvent(QPaintEvent*) {
     const QFontMetricsF metrics(font());
     for (int ring = 1; ring * step <= range; ++ring) {
         const QString text = ring == 1 ? tr("%1 px").arg(step) : QString::number(ring * step);
-        const QRectF place(middle.x() + ring * step * scale + 2, middle.y() + 2, metrics.horizontalAdvance(text) + 4,
-                           metrics.height());
+        QRectF place(middle.x() + ring * step * scale + 2, middle.y() + 2, metrics.horizontalAdvance(text) + 4,
+                     metrics.height());
         if (place.right() > width() - 2)
-            break;
+            place.moveRight(place.left() - 4);
         QColor ground = theme.panel;
         ground.setAlpha(200);
         painter.fillRect(place, ground);

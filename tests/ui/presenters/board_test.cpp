@@ -120,6 +120,29 @@ TEST_F(BoardDesk, SaysWhyABoardIsRefusedAndWhenOneIsTaken) {
     ASSERT_TRUE(waitFor([&] { return said.contains(sentenceOf(OfferOutcome::Redundant).toStdString()); }));
 }
 
+TEST(BoardPresenter, OutOfFocusNoBoardIsTaken) {
+    Scenario scenario = smallCamera();
+    scenario.pictures.blur_px = 2.5;
+    Desk desk(scenario);
+    BoardPresenter boards(desk.workbench, desk.scan);
+    // Squares so large that their edges show all of the blur.
+    BoardPlan plan;
+    plan.kind = BoardKind::Chessboard;
+    plan.columns = 6;
+    plan.rows = 4;
+    boards.setPlan(plan);
+    desk.workbench.chooseCamera(0);
+    std::set<std::string> said;
+    QObject::connect(&boards, &BoardPresenter::sightChanged, &boards, [&] {
+        said.insert(boards.sight().sentence.left(7).toStdString());
+        EXPECT_FALSE(boards.sight().view);
+    });
+    boards.start();
+    pass(desk.rig.clock(), 6s);
+    EXPECT_TRUE(waitFor([&] { return said.contains("Blurred"); }));
+    EXPECT_TRUE(boards.boards().views().empty());
+}
+
 TEST_F(BoardDesk, StopsInTheMiddleAndGoesOn) {
     ASSERT_TRUE(take(2));
     boards->stop();

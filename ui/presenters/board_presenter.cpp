@@ -34,6 +34,8 @@ BoardPresenter::BoardPresenter(Workbench& workbench, ScanPresenter& scan, QObjec
 }
 
 BoardPresenter::~BoardPresenter() {
+    // Who listens may be gone already.
+    blockSignals(true);
     stop();
     if (calibrating_)
         calibrating_->isCancelled = true;

@@ -98,7 +98,8 @@ TEST_F(BoardDesk, AcceptedItIsOneUndoableDecisionThatSaysWhereItIsFrom) {
 
 TEST_F(BoardDesk, SaysWhyABoardIsRefusedAndWhenOneIsTaken) {
     std::set<std::string> said;
-    QObject::connect(boards.get(), &BoardPresenter::sightChanged, boards.get(),
+    const QObject here;
+    QObject::connect(boards.get(), &BoardPresenter::sightChanged, &here,
                      [&] { said.insert(boards->sight().sentence.toStdString()); });
     // One that nobody holds.
     const auto hold = std::exchange(desk.workbench.hands->holdBoard, nullptr);
@@ -124,6 +125,7 @@ TEST(BoardPresenter, OutOfFocusNoBoardIsTaken) {
     Scenario scenario = smallCamera();
     scenario.pictures.blur_px = 2.5;
     Desk desk(scenario);
+    std::set<std::string> said;
     BoardPresenter boards(desk.workbench, desk.scan);
     // Squares so large that their edges show all of the blur.
     BoardPlan plan;
@@ -132,13 +134,12 @@ TEST(BoardPresenter, OutOfFocusNoBoardIsTaken) {
     plan.rows = 4;
     boards.setPlan(plan);
     desk.workbench.chooseCamera(0);
-    std::set<std::string> said;
     QObject::connect(&boards, &BoardPresenter::sightChanged, &boards, [&] {
         said.insert(boards.sight().sentence.left(7).toStdString());
         EXPECT_FALSE(boards.sight().view);
     });
     boards.start();
-    pass(desk.rig.clock(), 6s);
+    pass(desk.rig.clock(), 2s);
     EXPECT_TRUE(waitFor([&] { return said.contains("Blurred"); }));
     EXPECT_TRUE(boards.boards().views().empty());
 }

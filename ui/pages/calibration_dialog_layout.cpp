@@ -80,7 +80,7 @@ QWidget* CalibrationDialog::buildBoards() {
     boards_->verticalHeader()->setDefaultSectionSize(22);
     boards_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
     boards_->horizontalHeader()->setHighlightSections(false);
-    boards_->setMinimumSize(350, 100);
+    boards_->setMinimumSize(375, 100);
     column->addWidget(boards_, 1);
     auto* buttons = new QHBoxLayout;
     remove_ = button(tr("Remove board"), "removeBoard", tr("The selected board no longer counts"));

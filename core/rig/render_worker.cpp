@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/rig/board_painter.h"
+
 namespace skincal {
 namespace {
 
@@ -30,6 +32,7 @@ std::optional<RenderedFrame> RenderWorker::take() {
 
 void RenderWorker::work(const std::stop_token& stop) {
     std::optional<FrameRenderer> renderer;
+    std::optional<BoardPainter> boards;
     Isometry3d T_r_v = Isometry3d::Identity();
     for (;;) {
         RenderRequest request;
@@ -47,7 +50,13 @@ void RenderWorker::work(const std::stop_token& stop) {
             renderer->moveCamera(request.T_r_v);
         T_r_v = request.T_r_v;
         RenderedFrame picture{std::move(request.caption), request.run};
-        picture.frame.image = renderer->render(request.lit, request.frame, request.colour, request.exposure);
+        HeldLayer held;
+        if (request.board) {
+            if (!boards)
+                boards.emplace(world_->scenario.camera, world_->scenario.pictures.blur_px);
+            held = boards->paint(*request.board, request.T_v_b);
+        }
+        picture.frame.image = renderer->render(request.lit, request.frame, request.colour, request.exposure, held);
         {
             const std::lock_guard lock(mutex_);
             picture_ = std::move(picture);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/camera/frame_source.h"
+#include "core/camera_calibration/board_plan.h"
 #include "core/simulation/renderer.h"
 
 namespace skincal {
@@ -19,7 +20,9 @@ struct RenderRequest {
     std::vector<LitModule> lit;
     std::size_t frame = 0;  ///< of the disturbances, see FrameRenderer
     bool colour = false;
-    double exposure = 1;  ///< see FrameRenderer::render
+    double exposure = 1;             ///< see FrameRenderer::render
+    std::optional<BoardPlan> board;  ///< that is held before the camera
+    std::vector<Isometry3d> T_v_b;   ///< of it, see BoardPainter::paint
     std::uint64_t run = 0;
     CameraFrame caption;  ///< time and sequence
 };

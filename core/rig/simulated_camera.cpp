@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/rig/board_painter.h"
 #include "core/rig/render_worker.h"
 
 namespace skincal {
@@ -127,6 +128,14 @@ void SimulatedCamera::expose(std::uint64_t run, std::uint64_t frame) {
     request.frame = sequence_ % kCourse;
     request.colour = world_->scenario.views.scan == ScanKind::Coloured;
     request.exposure = exposure_ / kUsualExposure;
+    if (const auto& board = rig_->heldBoard()) {
+        request.board = board->plan();
+        const auto shutter = std::chrono::duration<double>(exposure_);
+        const auto end = time + std::chrono::duration_cast<Time>(shutter);
+        const int moments = board->isStill(time) && board->isStill(end) ? 1 : BoardPainter::kSamples;
+        for (int k = 0; k < moments; ++k)
+            request.T_v_b.push_back(board->pose(time + k * std::chrono::duration_cast<Time>(shutter) / moments));
+    }
     request.run = run;
     request.caption.time = time;
     request.caption.sequence = sequence_++;

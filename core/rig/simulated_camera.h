@@ -18,6 +18,8 @@ class RenderWorker;
 /// and the sequence shows it; at clock speed 0 time waits for every picture, so that none is ever missing and it
 /// arrives at its own time.
 ///
+/// A board that is held before it (SimulatedRig::holdBoard) shows as its lens bends it, smeared while it moves.
+///
 /// Pictures are grey, of skins that are scanned in colours BGR, as with any picture that shows a coloured LED.
 /// Unplugged, it fails and stops. It stops without a word where the rig is destroyed.
 class SimulatedCamera : public FrameSource {

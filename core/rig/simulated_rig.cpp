@@ -61,6 +61,10 @@ void SimulatedRig::restCameraAt(Time when) {
     });
 }
 
+void SimulatedRig::holdBoard(const BoardPlan& plan) {
+    board_.emplace(plan, world_->scenario.camera, now());
+}
+
 void SimulatedRig::touch(const Vector3d& point_r, double force) {
     if (!point_r.allFinite() || !(force >= 0))
         throw std::logic_error("SimulatedRig: no touch that can be felt");

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/rig/held_board.h"
 #include "core/rig/held_body.h"
 #include "core/rig/held_camera.h"
 #include "core/rig/rig_clock.h"
@@ -61,6 +62,13 @@ class SimulatedRig : public QObject {
     /// that is on its way ends there; cameraRested() follows then.
     void knockCamera(double pixels);
 
+    /// Somebody holds a calibration board before the camera and shows it from all sides, until putBoardAway(). It is
+    /// always taken up anew. Throws std::logic_error for a plan that
+    /// isn't valid.
+    void holdBoard(const BoardPlan& plan);
+    void putBoardAway() { board_.reset(); }
+    [[nodiscard]] const std::optional<HeldBoard>& heldBoard() const { return board_; }
+
     /// A fingertip on the body, until release(); call it again and again to drag it.
     /// @param point_r  where on the skin, body frame
     /// @param force    N, not negative
@@ -112,6 +120,7 @@ class SimulatedRig : public QObject {
     std::uint64_t turns_ = 0;
     std::uint64_t moves_ = 0;
     std::optional<Contact> contact_;
+    std::optional<HeldBoard> board_;
     bool skinPlugged_ = true;
     bool cameraPlugged_ = true;
     std::chrono::milliseconds latency_{80};

@@ -176,8 +176,8 @@ cv::Mat FrameRenderer::expose(const cv::Mat& light, std::uint64_t noiseSeed) con
     return picture;
 }
 
-cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t frame, bool colour,
-                              double exposure) const {
+cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t frame, bool colour, double exposure,
+                              const HeldLayer& held) const {
     colour = colour || std::any_of(lit.begin(), lit.end(), [](const LitModule& l) { return l.colour.has_value(); });
     const std::vector<Spot>& spots = bumped(frame) ? bumpedSpots_ : spots_;
     const double mirror = world_.scenario.disturbances.reflection;
@@ -208,6 +208,11 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
                 if (image.pixel.y() > edge && world_.scenario.camera.contains(image.pixel))
                     drawSpot(light, image);
             }
+        }
+        if (!held.cover.empty()) {
+            cv::Mat behind = light(cv::Rect(held.corner, held.cover.size()));
+            const double tint = colour ? kWarmLight.at(static_cast<std::size_t>(channel)) : 1;
+            behind = behind.mul(1 - held.cover) + tint * held.light;
         }
         // Who stands in front hides LEDs as he hides everything else.
         if (!person_.level.empty())

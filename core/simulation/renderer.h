@@ -8,6 +8,13 @@
 
 namespace skincal {
 
+/// Something that is held between the camera and everything else. Both CV_32F and equally large.
+struct HeldLayer {
+    cv::Mat light;     ///< grey levels that it adds: its own times how much of a pixel it covers
+    cv::Mat cover;     ///< share of the pixel that it hides, 0 to 1
+    cv::Point corner;  ///< pixel of the picture where its top-left pixel lies; all of it is within the picture
+};
+
 /// The simulated webcam in one place: LEDs with their lobe, through lens, blur, noise and clipping, on the skin before
 /// a room, with the scenario's disturbances. The picture of a frame depends on world, pose and number of the view, lit
 /// set, frame number and exposure alone, not on what was drawn before. The world must outlive it.
@@ -26,8 +33,9 @@ class FrameRenderer {
 
     /// 8-bit grey, or BGR where any LED is lit in a colour or `colour` asks for it.
     /// @param exposure  relative to the one that RenderOptions' levels are for: light grows with it, and clips.
+    /// @param held      hides what is behind it, lit LEDs included; empty for nothing
     [[nodiscard]] cv::Mat render(const std::vector<LitModule>& lit, std::size_t frame, bool colour = false,
-                                 double exposure = 1) const;
+                                 double exposure = 1, const HeldLayer& held = {}) const;
 
   private:
     struct Spot {

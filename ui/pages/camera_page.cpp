@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/formats/camera_file.h"
+#include "ui/pages/calibration_dialog.h"
 #include "ui/widgets/histogram_view.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/picture_view.h"
@@ -24,6 +25,7 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
            parent),
       workbench_(workbench),
       scan_(scan),
+      board_(workbench, scan),
       devices_(new QComboBox),
       formats_(new QComboBox),
       exposure_(new QSlider(Qt::Horizontal)),
@@ -33,7 +35,8 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
       figures_(mutedLabel()),
       intrinsics_(new QLabel),
       load_(new QPushButton(tr("Load intrinsics …"))),
-      makers_(new QPushButton(tr("Use the maker's intrinsics"))) {
+      makers_(new QPushButton(tr("Use the maker's intrinsics"))),
+      calibrate_(new QPushButton(tr("Calibrate here …"))) {
     auto* top = new QHBoxLayout;
     devices_->setAccessibleName(tr("Camera"));
     devices_->setToolTip(tr("The camera that looks at the body"));
@@ -69,7 +72,10 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     makers_->setProperty("primary", true);
     makers_->setToolTip(tr("The simulated camera knows its own lens"));
     makers_->setVisible(workbench.hands && workbench.hands->intrinsics);
+    calibrate_->setObjectName(QStringLiteral("calibrateHere"));
+    calibrate_->setToolTip(tr("Show a printed chessboard or ChArUco board to this camera and get its intrinsics"));
     buttons->addWidget(makers_);
+    buttons->addWidget(calibrate_);
     buttons->addWidget(load_);
     buttons->addStretch();
     right->addLayout(buttons);
@@ -102,6 +108,7 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     });
     connect(makers_, &QPushButton::clicked, this,
             [this] { adopt(*workbench_.hands->intrinsics, tr("Use the maker's intrinsics")); });
+    connect(calibrate_, &QPushButton::clicked, this, &CameraPage::calibrateHere);
     connect(&workbench, &Workbench::cameraChosen, this, &CameraPage::listFormats);
     connect(&workbench.session(), &Session::decisionsChanged, this, &CameraPage::refresh);
     connect(&scan, &ScanPresenter::pictureChanged, this, [this] {
@@ -111,12 +118,27 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     listFormats();
 }
 
+CameraPage::~CameraPage() {
+    // Before the presenter that it shows.
+    delete dialog_;
+}
+
 void CameraPage::setActive(bool active) {
     isActive_ = active;
     if (active && workbench_.camera() == nullptr && !workbench_.cameraOffers.empty())
         workbench_.chooseCamera(0);
+    // Whoever does something else has put the board away.
+    if (!active && dialog_ != nullptr)
+        dialog_->close();
     scan_.setActive(active);
     refresh();
+}
+
+void CameraPage::calibrateHere() {
+    if (dialog_ == nullptr)
+        dialog_ = new CalibrationDialog(board_, scan_, this);
+    dialog_->show();
+    dialog_->raise();
 }
 
 void CameraPage::loadIntrinsics(const QString& file) {
@@ -185,6 +207,8 @@ void CameraPage::refresh() {
                        .arg(camera->cy, 0, 'f', 1)
                        .arg(QString::fromUtf8(name(camera->distortionModel).data()))
                        .arg(camera->distortion.size());
+    if (const QString from = board_.provenanceOf(*camera); !from.isEmpty())
+        text += tr(" They were %1.").arg(from);
     if (source != nullptr && (source->format().width != camera->width || source->format().height != camera->height))
         text += tr(" <b>The camera gives %1 × %2: choose that size, or other intrinsics.</b>")
                     .arg(source->format().width)

@@ -2,7 +2,7 @@
 
 #include "core/vision/picture_figures.h"
 #include "ui/pages/page.h"
-#include "ui/presenters/scan_presenter.h"
+#include "ui/presenters/board_presenter.h"
 
 class QComboBox;
 class QPushButton;
@@ -10,6 +10,7 @@ class QSlider;
 
 namespace skincal {
 
+class CalibrationDialog;
 class HistogramView;
 class PictureView;
 
@@ -17,6 +18,7 @@ class CameraPage : public Page {
     Q_OBJECT
   public:
     CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* parent = nullptr);
+    ~CameraPage() override;
 
     void setActive(bool active) override;
     /// A ROS, OpenCV or Kalibr file.
@@ -29,10 +31,12 @@ class CameraPage : public Page {
     void listFormats();
     void refresh();
     void showPicture();
+    void calibrateHere();
     void adopt(const CameraModel& camera, const QString& text);
 
     Workbench& workbench_;
     ScanPresenter& scan_;
+    BoardPresenter board_;
     QComboBox* devices_;
     QComboBox* formats_;
     QSlider* exposure_;
@@ -43,6 +47,8 @@ class CameraPage : public Page {
     QLabel* intrinsics_;
     QPushButton* load_;
     QPushButton* makers_;
+    QPushButton* calibrate_;
+    CalibrationDialog* dialog_ = nullptr;  ///< null before the first time
     bool isActive_ = false;
 };
 

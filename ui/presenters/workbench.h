@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/camera/frame_source.h"
+#include "core/camera_calibration/board_plan.h"
 #include "core/device/skin_device.h"
 #include "core/session/session.h"
 
@@ -33,6 +34,9 @@ struct RigHands {
     /// A fingertip presses on a point of the module, N, until release(); again and again to drag it.
     std::function<void(ModuleId, const Vector3d& point_u, double force)> touch;
     std::function<void()> release;
+    /// Shows such a calibration board to the camera from all sides, until putBoardAway().
+    std::function<void(const BoardPlan&)> holdBoard;
+    std::function<void()> putBoardAway;
     /// What the maker of the camera says of its lens.
     std::optional<CameraModel> intrinsics;
 };

@@ -39,6 +39,8 @@ void offerRig(Workbench& workbench, SimulatedRig& rig) {
             rig.touch(poseOf(module) * point_u, force);
     };
     hands.release = [&rig] { rig.release(); };
+    hands.holdBoard = [&rig](const BoardPlan& plan) { rig.holdBoard(plan); };
+    hands.putBoardAway = [&rig] { rig.putBoardAway(); };
     hands.intrinsics = rig.world().scenario.camera;
     workbench.hands = std::move(hands);
 }

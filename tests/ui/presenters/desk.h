@@ -38,6 +38,8 @@ class Desk {
             place_ = (place_ + 1) % rig.suggestedViews().size();
             rig.moveCamera(rig.suggestedViews()[place_]);
         };
+        hands.holdBoard = [this](const BoardPlan& plan) { rig.holdBoard(plan); };
+        hands.putBoardAway = [this] { rig.putBoardAway(); };
         hands.intrinsics = rig.world().scenario.camera;
         workbench.hands = std::move(hands);
     }

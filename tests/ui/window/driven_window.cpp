@@ -112,6 +112,19 @@ void DrivenWindow::takePicture(const QString& name) {
     }
 }
 
+void DrivenWindow::takePictureOf(QWidget& widget, const QString& name) {
+    const QString folder = qEnvironmentVariable("SKINCAL_SCREENSHOTS");
+    if (folder.isEmpty())
+        return;
+    QDir().mkpath(folder);
+    for (const bool dark : {false, true}) {
+        window.setDark(dark);
+        for (int turn = 0; turn < 20; ++turn)
+            QCoreApplication::processEvents();
+        widget.grab().save(QDir(folder).filePath(name + (dark ? QStringLiteral("-dark.png") : QStringLiteral(".png"))));
+    }
+}
+
 void DrivenWindow::takeBodyPicture(const QString& name) {
     const QString folder = qEnvironmentVariable("SKINCAL_SCREENSHOTS");
     if (folder.isEmpty())

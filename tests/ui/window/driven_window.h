@@ -38,6 +38,8 @@ class DrivenWindow {
 
     /// A picture of the window, where SKINCAL_SCREENSHOTS names a folder.
     void takePicture(const QString& name);
+    /// Of another window of the program, likewise.
+    void takePictureOf(QWidget& widget, const QString& name);
     /// Of the body alone, likewise.
     void takeBodyPicture(const QString& name);
 

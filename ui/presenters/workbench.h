@@ -9,6 +9,7 @@
 
 #include "core/camera/frame_source.h"
 #include "core/device/skin_device.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/session/session.h"
 
 namespace skincal {
@@ -33,6 +34,8 @@ struct RigHands {
     /// A fingertip presses on a point of the module, N, until release(); again and again to drag it.
     std::function<void(ModuleId, const Vector3d& point_u, double force)> touch;
     std::function<void()> release;
+    /// The true surface of the body, m, in a frame of its own, as a drawing of it would be.
+    std::function<TriangleMesh()> bodySurface;
     /// What the maker of the camera says of its lens.
     std::optional<CameraModel> intrinsics;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QImage>
+#include <QPolygonF>
 #include <QWidget>
 #include <optional>
 #include <vector>
@@ -18,6 +19,14 @@ struct PictureMark {
     std::optional<QPointF> expected{};  ///< where the body has it; a line leads there
 };
 
+/// An outline on a picture, under the marks.
+struct PictureShape {
+    QPolygonF outline;  ///< px, closed by itself
+    QColor colour;
+    ModuleId module;
+    bool isDim = false;  ///< drawn faintly and broken: what the picture can't show
+};
+
 /// A camera's picture, as large as the widget allows, with marks that can be clicked. The wheel zooms, a drag shifts.
 class PictureView : public QWidget {
     Q_OBJECT
@@ -28,6 +37,8 @@ class PictureView : public QWidget {
     [[nodiscard]] const QImage& image() const { return image_; }
     void setMarks(std::vector<PictureMark> marks);
     [[nodiscard]] const std::vector<PictureMark>& marks() const { return marks_; }
+    void setShapes(std::vector<PictureShape> shapes);
+    [[nodiscard]] const std::vector<PictureShape>& shapes() const { return shapes_; }
     void setSelected(std::optional<ModuleId> module);
     /// What stands in the middle while there is no picture.
     void setPlaceholder(const QString& text);
@@ -51,9 +62,11 @@ class PictureView : public QWidget {
 
   private:
     [[nodiscard]] QTransform transform() const;
+    void paintShapes(QPainter& painter) const;
 
     QImage image_;
     std::vector<PictureMark> marks_;
+    std::vector<PictureShape> shapes_;
     std::optional<ModuleId> selected_;
     QString placeholder_;
     double zoom_ = 1;

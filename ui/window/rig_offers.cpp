@@ -4,6 +4,7 @@
 
 #include "core/rig/simulated_camera.h"
 #include "core/rig/simulated_skin.h"
+#include "core/simulation/body_surface.h"
 
 namespace skincal {
 namespace {
@@ -39,6 +40,7 @@ void offerRig(Workbench& workbench, SimulatedRig& rig) {
             rig.touch(poseOf(module) * point_u, force);
     };
     hands.release = [&rig] { rig.release(); };
+    hands.bodySurface = [&rig] { return bodySurface(rig.world()); };
     hands.intrinsics = rig.world().scenario.camera;
     workbench.hands = std::move(hands);
 }

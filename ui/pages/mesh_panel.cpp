@@ -1,0 +1,239 @@
+#include "ui/pages/mesh_panel.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QHeaderView>
+#include <QLabel>
+#include <QListWidget>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QTableWidget>
+#include <algorithm>
+#include <cmath>
+
+#include "ui/pages/page.h"
+#include "ui/widgets/theme.h"
+
+namespace skincal {
+namespace {
+
+QString mm(double metres, int digits = 2) {
+    return MeshPanel::tr("%1 mm").arg(1e3 * metres, 0, 'f', digits);
+}
+
+QString signedMm(double metres) {
+    return (metres < 0 ? QStringLiteral("−") : QStringLiteral("+")) + mm(std::abs(metres));
+}
+
+QString degrees(double angle) {
+    return MeshPanel::tr("%1°").arg(angle / kDegree, 0, 'f', 1);
+}
+
+QTableWidget* plainTable(const QString& name, const QString& accessible) {
+    auto* table = new QTableWidget;
+    table->setObjectName(name);
+    table->setAccessibleName(accessible);
+    table->verticalHeader()->hide();
+    table->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    table->horizontalHeader()->setStretchLastSection(true);
+    return table;
+}
+
+QTableWidgetItem* numberItem(const QString& text) {
+    auto* item = new QTableWidgetItem(text);
+    item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
+    return item;
+}
+
+enum Column { kModule, kDeviation, kAngle, kColumns };
+
+}  // namespace
+
+MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
+    : QWidget(parent),
+      presenter_(presenter),
+      open_(new QPushButton(tr("Compare with a mesh …"))),
+      simulated_(new QPushButton(tr("Simulated body"))),
+      remove_(new QPushButton(tr("Remove mesh"))),
+      unit_(new QComboBox),
+      offset_(new QCheckBox(tr("Modules stand off"))),
+      verdict_(new QLabel),
+      reason_(mutedLabel()),
+      busy_(new QProgressBar),
+      result_(new QWidget),
+      figures_(plainTable(QStringLiteral("meshFigures"), tr("Agreement with the mesh"))),
+      modules_(plainTable(QStringLiteral("deviations"), tr("Modules by deviation"))),
+      doubts_(new QListWidget) {
+    open_->setObjectName(QStringLiteral("openMesh"));
+    open_->setToolTip(
+        tr("Choose a surface of the body (STL), such as its drawing; one can also be dropped on the "
+           "window"));
+    simulated_->setObjectName(QStringLiteral("simulatedBody"));
+    simulated_->setToolTip(tr("Compare with the true surface of the simulated body"));
+    simulated_->setVisible(presenter.hasSimulatedBody());
+    remove_->setObjectName(QStringLiteral("removeMesh"));
+    remove_->setToolTip(tr("Forget the mesh: the 3D view shows the body alone again"));
+    unit_->setObjectName(QStringLiteral("meshUnit"));
+    unit_->setAccessibleName(tr("Unit of the mesh"));
+    unit_->setToolTip(
+        tr("STL files do not say what their numbers are; chosen by the size of the body where you do "
+           "not know"));
+    unit_->addItem(tr("Unit by size"));
+    unit_->addItem(tr("Millimetres"), static_cast<int>(MeshUnit::Millimetre));
+    unit_->addItem(tr("Metres"), static_cast<int>(MeshUnit::Metre));
+    offset_->setObjectName(QStringLiteral("meshOffset"));
+    offset_->setToolTip(
+        tr("Boards and their carrier have a thickness: finds by how much all modules lie above the "
+           "surface together, and leaves it out of the deviations"));
+    offset_->setChecked(presenter.isOffsetFitted());
+    auto* buttons = new QHBoxLayout;
+    buttons->addWidget(open_);
+    buttons->addWidget(simulated_);
+    buttons->addWidget(remove_);
+    buttons->addStretch();
+    auto* choices = new QHBoxLayout;
+    choices->addWidget(unit_);
+    choices->addWidget(offset_);
+    choices->addStretch();
+    verdict_->setObjectName(QStringLiteral("instruction"));
+    verdict_->setWordWrap(true);
+    busy_->setRange(0, 0);
+    busy_->setAccessibleName(tr("Comparing"));
+
+    figures_->setColumnCount(2);
+    figures_->horizontalHeader()->hide();
+    figures_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+    figures_->setSelectionMode(QAbstractItemView::NoSelection);
+    modules_->setColumnCount(kColumns);
+    modules_->setHorizontalHeaderLabels({tr("Module"), tr("Above the mesh"), tr("Tilted by")});
+    modules_->setSelectionBehavior(QAbstractItemView::SelectRows);
+    modules_->setSelectionMode(QAbstractItemView::SingleSelection);
+    modules_->setToolTip(tr("The modules that lie farthest off come first; select one to see it in the 3D view"));
+    doubts_->setObjectName(QStringLiteral("meshDoubts"));
+    doubts_->setAccessibleName(tr("What to know about the comparison"));
+    doubts_->setWordWrap(true);
+    doubts_->setSelectionMode(QAbstractItemView::NoSelection);
+    doubts_->setMinimumHeight(44);
+    auto* results = new QVBoxLayout(result_);
+    results->setContentsMargins(0, 0, 0, 0);
+    auto* tables = new QHBoxLayout;
+    tables->addWidget(figures_, 3);
+    tables->addWidget(modules_, 2);
+    results->addLayout(tables, 3);
+    results->addWidget(mutedLabel(tr("What to know about it:")));
+    results->addWidget(doubts_, 2);
+
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(12, 12, 12, 12);
+    column->setSpacing(8);
+    column->addLayout(buttons);
+    column->addLayout(choices);
+    column->addWidget(verdict_);
+    column->addWidget(reason_);
+    column->addWidget(busy_);
+    column->addWidget(result_, 1);
+    column->addStretch();
+
+    connect(open_, &QPushButton::clicked, this, &MeshPanel::choose);
+    connect(simulated_, &QPushButton::clicked, &presenter, &MeshPresenter::useSimulatedBody);
+    connect(remove_, &QPushButton::clicked, &presenter, &MeshPresenter::remove);
+    connect(unit_, &QComboBox::currentIndexChanged, this, [this] {
+        const QVariant unit = unit_->currentData();
+        presenter_.setUnit(unit.isValid() ? std::optional(static_cast<MeshUnit>(unit.toInt())) : std::nullopt);
+    });
+    connect(offset_, &QCheckBox::toggled, &presenter, &MeshPresenter::setOffsetFitted);
+    connect(&presenter, &MeshPresenter::changed, this, &MeshPanel::refresh);
+    connect(modules_, &QTableWidget::itemSelectionChanged, this, [this] {
+        if (!modules_->selectedItems().isEmpty())
+            emit moduleSelected(ModuleId{modules_->item(modules_->currentRow(), kModule)->text().toUInt()});
+    });
+    refresh();
+}
+
+void MeshPanel::choose() {
+    const QString file = QFileDialog::getOpenFileName(this, tr("Compare with a mesh"), {}, tr("Meshes (*.stl *.STL)"));
+    if (!file.isEmpty())
+        presenter_.open(file);
+}
+
+std::vector<std::pair<QString, QString>> MeshPanel::figuresOf(const MeshComparison& comparison) {
+    const std::size_t all = comparison.modules.size() + comparison.unmatched.size();
+    return {{tr("Modules on the mesh"), tr("%1 of %2").arg(comparison.modules.size()).arg(all)},
+            {tr("Deviation (rms)"), mm(comparison.rms)},
+            {tr("Deviation (median)"), mm(comparison.median)},
+            {tr("95 % are within"), mm(comparison.share95)},
+            {tr("Farthest off"),
+             tr("%1, module %2").arg(signedMm(comparison.worst.deviation)).arg(comparison.worst.id.value)},
+            {tr("All stand off by"), mm(comparison.offset)},
+            {tr("Tilt against the mesh (rms)"), degrees(comparison.angle_rms)},
+            {tr("Share of the mesh covered"), tr("%1 %").arg(100 * comparison.covered, 0, 'f', 0)}};
+}
+
+void MeshPanel::refresh() {
+    const auto& comparison = presenter_.comparison();
+    const bool hasMesh = presenter_.hasMesh();
+    const bool isBusy = hasMesh && !comparison && presenter_.complaint().isEmpty();
+    remove_->setEnabled(hasMesh);
+    busy_->setVisible(isBusy);
+    result_->setVisible(comparison != nullptr);
+    const Theme theme = Theme::current();
+    QColor colour = theme.text;
+    if (!hasMesh) {
+        verdict_->setText(tr("No mesh yet"));
+        reason_->setText(
+            tr("With a surface of the body, such as its drawing, you see how far each module lies above or "
+               "below it. The two are laid on each other by themselves, wherever they are."));
+    } else if (isBusy) {
+        verdict_->setText(tr("Comparing with %1 …").arg(presenter_.name()));
+        reason_->setText(tr("The body is tried on the mesh in many poses."));
+    } else if (!comparison) {
+        verdict_->setText(tr("Not compared"));
+        reason_->setText(presenter_.complaint());
+        colour = theme.bad;
+    } else {
+        const bool isDoubtful = !comparison->doubts.empty();
+        verdict_->setText(isDoubtful
+                              ? tr("%1 rms from %2, with reservations").arg(mm(comparison->rms), presenter_.name())
+                              : tr("%1 rms from %2").arg(mm(comparison->rms), presenter_.name()));
+        colour = isDoubtful ? theme.attention : theme.good;
+        const QString unit = presenter_.usedUnit() == MeshUnit::Millimetre ? tr("millimetres") : tr("metres");
+        reason_->setText(
+            tr("The mesh is taken to be in %1. Deviations are along its outward normal, positive above.").arg(unit));
+    }
+    verdict_->setStyleSheet(QStringLiteral("color: %1").arg(colour.name()));
+    if (comparison != shown_)
+        showComparison();
+}
+
+void MeshPanel::showComparison() {
+    shown_ = presenter_.comparison();
+    figures_->setRowCount(0);
+    modules_->setRowCount(0);
+    doubts_->clear();
+    if (!shown_)
+        return;
+    for (const auto& [name, figure] : figuresOf(*shown_)) {
+        const int row = figures_->rowCount();
+        figures_->insertRow(row);
+        figures_->setItem(row, 0, new QTableWidgetItem(name));
+        figures_->setItem(row, 1, new QTableWidgetItem(figure));
+    }
+    std::vector<ModuleDeviation> sorted = shown_->modules;
+    std::stable_sort(sorted.begin(), sorted.end(), [](const ModuleDeviation& a, const ModuleDeviation& b) {
+        return std::abs(a.deviation) > std::abs(b.deviation);
+    });
+    modules_->setRowCount(static_cast<int>(sorted.size()));
+    for (int row = 0; row < modules_->rowCount(); ++row) {
+        const ModuleDeviation& module = sorted[static_cast<std::size_t>(row)];
+        modules_->setItem(row, kModule, numberItem(QString::number(module.id.value)));
+        modules_->setItem(row, kDeviation, numberItem(signedMm(module.deviation)));
+        modules_->setItem(row, kAngle, numberItem(degrees(module.angle)));
+    }
+    for (const AlignmentDoubt& doubt : shown_->doubts)
+        doubts_->addItem(MeshPresenter::sentenceOf(doubt));
+    if (shown_->doubts.empty())
+        doubts_->addItem(tr("No other pose fits as well, and every module has the mesh under it."));
+}
+
+}  // namespace skincal

@@ -2,6 +2,7 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QEvent>
 #include <QFileDialog>
 #include <QHeaderView>
 #include <QLabel>
@@ -61,6 +62,7 @@ MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
       verdict_(new QLabel),
       reason_(mutedLabel()),
       busy_(new QProgressBar),
+      drop_(new QLabel(tr("Drop an STL file here, or anywhere on the window"))),
       result_(new QWidget),
       figures_(plainTable(QStringLiteral("meshFigures"), tr("Agreement with the mesh"))),
       modules_(plainTable(QStringLiteral("deviations"), tr("Modules by deviation"))),
@@ -106,7 +108,15 @@ MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
     figures_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
     figures_->setSelectionMode(QAbstractItemView::NoSelection);
     modules_->setColumnCount(kColumns);
-    modules_->setHorizontalHeaderLabels({tr("Module"), tr("Above the mesh"), tr("Tilted by")});
+    modules_->setHorizontalHeaderLabels({tr("Module"), tr("Above"), tr("Tilt")});
+    for (const int column : {kModule, kDeviation})
+        modules_->horizontalHeader()->setSectionResizeMode(column, QHeaderView::ResizeToContents);
+    modules_->horizontalHeaderItem(kDeviation)
+        ->setToolTip(
+            tr("How far the module's middle lies above where the mesh and the common stand-off would have it"));
+    modules_->horizontalHeaderItem(kAngle)->setToolTip(tr("Angle between the module's normal and the mesh's"));
+    modules_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    figures_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     modules_->setSelectionBehavior(QAbstractItemView::SelectRows);
     modules_->setSelectionMode(QAbstractItemView::SingleSelection);
     modules_->setToolTip(tr("The modules that lie farthest off come first; select one to see it in the 3D view"));
@@ -114,15 +124,17 @@ MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
     doubts_->setAccessibleName(tr("What to know about the comparison"));
     doubts_->setWordWrap(true);
     doubts_->setSelectionMode(QAbstractItemView::NoSelection);
-    doubts_->setMinimumHeight(44);
+    doubts_->setMinimumHeight(64);
+    drop_->setAlignment(Qt::AlignCenter);
+    drop_->setMinimumHeight(140);
     auto* results = new QVBoxLayout(result_);
     results->setContentsMargins(0, 0, 0, 0);
     auto* tables = new QHBoxLayout;
-    tables->addWidget(figures_, 3);
-    tables->addWidget(modules_, 2);
-    results->addLayout(tables, 3);
+    tables->addWidget(figures_, 5);
+    tables->addWidget(modules_, 4);
+    results->addLayout(tables, 4);
     results->addWidget(mutedLabel(tr("What to know about it:")));
-    results->addWidget(doubts_, 2);
+    results->addWidget(doubts_, 1);
 
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(12, 12, 12, 12);
@@ -132,6 +144,7 @@ MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
     column->addWidget(verdict_);
     column->addWidget(reason_);
     column->addWidget(busy_);
+    column->addWidget(drop_, 1);
     column->addWidget(result_, 1);
     column->addStretch();
 
@@ -149,6 +162,12 @@ MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
             emit moduleSelected(ModuleId{modules_->item(modules_->currentRow(), kModule)->text().toUInt()});
     });
     refresh();
+}
+
+void MeshPanel::changeEvent(QEvent* event) {
+    if (event->type() == QEvent::PaletteChange)
+        refresh();
+    QWidget::changeEvent(event);
 }
 
 void MeshPanel::choose() {
@@ -177,7 +196,10 @@ void MeshPanel::refresh() {
     remove_->setEnabled(hasMesh);
     busy_->setVisible(isBusy);
     result_->setVisible(comparison != nullptr);
+    drop_->setVisible(!hasMesh);
     const Theme theme = Theme::current();
+    drop_->setStyleSheet(QStringLiteral("color: %1; border: 2px dashed %2; border-radius: 8px;")
+                             .arg(theme.muted.name(), theme.line.name()));
     QColor colour = theme.text;
     if (!hasMesh) {
         verdict_->setText(tr("No mesh yet"));

@@ -27,6 +27,9 @@ class MeshPanel : public QWidget {
   signals:
     void moduleSelected(skincal::ModuleId module);
 
+  protected:
+    void changeEvent(QEvent* event) override;
+
   private:
     void refresh();
     void showComparison();
@@ -41,6 +44,7 @@ class MeshPanel : public QWidget {
     QLabel* verdict_;
     QLabel* reason_;
     QProgressBar* busy_;
+    QLabel* drop_;
     QWidget* result_;
     QTableWidget* figures_;
     QTableWidget* modules_;

@@ -192,6 +192,8 @@ void PicturePanel::showOverlay(const ModelOverlay& overlay) {
         PictureMark mark{toPoint(*module.found), module.counts ? kFound : kSetAside, module.module, !module.counts};
         if (module.residual)
             mark.expected = toPoint(*module.found - (module.counts ? scale : 1) * *module.residual);
+        // Small enough to leave the outline of its board in sight.
+        mark.radius = 3.5;
         marks.push_back(mark);
     }
     // What can be seen lies over what can't.

@@ -1,5 +1,6 @@
 #include "ui/pages/result_page.h"
 
+#include <QEvent>
 #include <QHeaderView>
 #include <QListWidget>
 #include <QTabWidget>
@@ -72,6 +73,13 @@ ResultPage::ResultPage(Workbench& workbench, MeshPresenter& mesh, QWidget* paren
 void ResultPage::setActive(bool active) {
     pictures_->setActive(active);
     mesh_.setActive(active);
+}
+
+void ResultPage::changeEvent(QEvent* event) {
+    // The verdict's colour is one of the theme's.
+    if (event->type() == QEvent::PaletteChange)
+        refresh();
+    Page::changeEvent(event);
 }
 
 void ResultPage::showMesh() {

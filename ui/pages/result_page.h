@@ -27,6 +27,9 @@ class ResultPage : public Page {
     /// Rows of the quality table, for tests and reports: what, and its figure.
     [[nodiscard]] static std::vector<std::pair<QString, QString>> figuresOf(const Solution& solution);
 
+  protected:
+    void changeEvent(QEvent* event) override;
+
   signals:
     void moduleSelected(skincal::ModuleId module);
 

@@ -170,7 +170,9 @@ double residualScale(const ModelOverlay& overlay, double wanted_px) {
         return 1;
     std::sort(sizes.begin(), sizes.end());
     const double typical = sizes[sizes.size() * 9 / 10];
-    const double factor = wanted_px / std::max(1e-3, typical);
+    // Longer than that is to look at dust.
+    constexpr double kMost = 200;
+    const double factor = std::min(kMost, wanted_px / std::max(1e-6, typical));
     if (factor <= 1)
         return 1;
     const double power = std::pow(10, std::floor(std::log10(factor)));

@@ -41,7 +41,8 @@ struct ModelOverlay {
 /// Empty where the view has no pose. What hides a module are other modules' boards: nothing else is known of the body.
 [[nodiscard]] ModelOverlay overlayOf(const BodyModel& body, const BodyView& view, const CameraModel& camera);
 
-/// How many times as long as they are residuals have to be drawn to be seen: 1, 2 or 5 times a power of ten.
+/// How many times as long as they are residuals have to be drawn to be seen: 1, 2 or 5 times a power of ten,
+/// at most 200.
 /// @param wanted_px  how long most of them may become in the picture
 [[nodiscard]] double residualScale(const ModelOverlay& overlay, double wanted_px);
 

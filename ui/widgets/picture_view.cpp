@@ -102,7 +102,7 @@ void PictureView::paintEvent(QPaintEvent*) {
         const bool isSelected = selected_ == mark.module;
         painter.setPen(QPen(mark.colour, isSelected ? 3 : 1.6));
         painter.setBrush(Qt::NoBrush);
-        const double radius = isSelected ? 11 : 7;
+        const double radius = isSelected ? 1.5 * mark.radius : mark.radius;
         painter.drawEllipse(at, radius, radius);
         if (mark.isCrossed) {
             painter.drawLine(at + QPointF(-radius, -radius), at + QPointF(radius, radius));

@@ -17,6 +17,7 @@ struct PictureMark {
     ModuleId module;
     bool isCrossed = false;             ///< what does not count
     std::optional<QPointF> expected{};  ///< where the body has it; a line leads there
+    double radius = 7;                  ///< of its ring, on the screen
 };
 
 /// An outline on a picture, under the marks.

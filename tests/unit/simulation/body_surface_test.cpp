@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/geometry/random.h"
 #include "core/mesh/mesh_comparison.h"
 #include "core/mesh/mesh_surface.h"
 
@@ -23,6 +24,42 @@ TEST(BodySurface, LiesUnderEveryBoard) {
             EXPECT_NEAR(found->distance, above, 4e-3) << name << ", module " << u;
         }
     }
+}
+
+/// Modules as they truly are, in a frame of their own.
+struct Seen {
+    std::vector<PlacedModule> modules;
+    Isometry3d T_a_r;
+};
+
+Seen seenElsewhere(const World& world, std::uint64_t seed) {
+    Random random(seed, "frame");
+    Seen seen{{}, makeIsometry(random.rotation(), random.normal3())};
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
+        seen.modules.push_back({world.skin.modules[u].id, seen.T_a_r * world.T_r_u[u]});
+    return seen;
+}
+
+TEST(BodySurface, APoseOnItThatIsNotDoubtedIsRight) {
+    int undoubted = 0;
+    for (const char* name : {"demo", "arm", "cylinder", "plane", "freeform", "shoe-sole", "mixed-shapes"}) {
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            const World world = buildWorld(*findScenario(name), seed);
+            const Seen seen = seenElsewhere(world, seed);
+            const auto comparison = compareWithMesh(seen.modules, bodySurface(world));
+            ASSERT_TRUE(comparison) << name << ", seed " << seed;
+            if (!comparison->doubts.empty())
+                continue;
+            ++undoubted;
+            double squares = 0;
+            for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
+                squares += (comparison->T_mesh_body * seen.modules[u].T_body_module.translation() -
+                            world.T_r_u[u].translation())
+                               .squaredNorm();
+            EXPECT_LT(std::sqrt(squares / static_cast<double>(world.T_r_u.size())), 5e-3) << name << ", seed " << seed;
+        }
+    }
+    EXPECT_GE(undoubted, 6) << "an arm, at least, is told for certain";
 }
 
 TEST(BodySurface, OfTheDemosArmIsFoundAgainWhereItIs) {

@@ -13,23 +13,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/pages/mesh_words.h"
 #include "ui/pages/page.h"
 #include "ui/widgets/theme.h"
 
 namespace skincal {
 namespace {
-
-QString mm(double metres, int digits = 2) {
-    return MeshPanel::tr("%1 mm").arg(1e3 * metres, 0, 'f', digits);
-}
-
-QString signedMm(double metres) {
-    return (metres < 0 ? QStringLiteral("−") : QStringLiteral("+")) + mm(std::abs(metres));
-}
-
-QString degrees(double angle) {
-    return MeshPanel::tr("%1°").arg(angle / kDegree, 0, 'f', 1);
-}
 
 QTableWidget* plainTable(const QString& name, const QString& accessible) {
     auto* table = new QTableWidget;
@@ -176,19 +165,6 @@ void MeshPanel::choose() {
         presenter_.open(file);
 }
 
-std::vector<std::pair<QString, QString>> MeshPanel::figuresOf(const MeshComparison& comparison) {
-    const std::size_t all = comparison.modules.size() + comparison.unmatched.size();
-    return {{tr("Modules on the mesh"), tr("%1 of %2").arg(comparison.modules.size()).arg(all)},
-            {tr("Deviation (rms)"), mm(comparison.rms)},
-            {tr("Deviation (median)"), mm(comparison.median)},
-            {tr("95 % are within"), mm(comparison.share95)},
-            {tr("Farthest off"),
-             tr("%1, module %2").arg(signedMm(comparison.worst.deviation)).arg(comparison.worst.id.value)},
-            {tr("All stand off by"), mm(comparison.offset)},
-            {tr("Tilt against the mesh (rms)"), degrees(comparison.angle_rms)},
-            {tr("Share of the mesh covered"), tr("%1 %").arg(100 * comparison.covered, 0, 'f', 0)}};
-}
-
 void MeshPanel::refresh() {
     const auto& comparison = presenter_.comparison();
     const bool hasMesh = presenter_.hasMesh();
@@ -215,9 +191,9 @@ void MeshPanel::refresh() {
         colour = theme.bad;
     } else {
         const bool isDoubtful = !comparison->doubts.empty();
-        verdict_->setText(isDoubtful
-                              ? tr("%1 rms from %2, with reservations").arg(mm(comparison->rms), presenter_.name())
-                              : tr("%1 rms from %2").arg(mm(comparison->rms), presenter_.name()));
+        verdict_->setText(
+            isDoubtful ? tr("%1 rms from %2, with reservations").arg(MeshWords::mm(comparison->rms), presenter_.name())
+                       : tr("%1 rms from %2").arg(MeshWords::mm(comparison->rms), presenter_.name()));
         colour = isDoubtful ? theme.attention : theme.good;
         const QString unit = presenter_.usedUnit() == MeshUnit::Millimetre ? tr("millimetres") : tr("metres");
         reason_->setText(
@@ -235,7 +211,7 @@ void MeshPanel::showComparison() {
     doubts_->clear();
     if (!shown_)
         return;
-    for (const auto& [name, figure] : figuresOf(*shown_)) {
+    for (const auto& [name, figure] : MeshWords::figuresOf(*shown_)) {
         const int row = figures_->rowCount();
         figures_->insertRow(row);
         figures_->setItem(row, 0, new QTableWidgetItem(name));
@@ -249,8 +225,8 @@ void MeshPanel::showComparison() {
     for (int row = 0; row < modules_->rowCount(); ++row) {
         const ModuleDeviation& module = sorted[static_cast<std::size_t>(row)];
         modules_->setItem(row, kModule, numberItem(QString::number(module.id.value)));
-        modules_->setItem(row, kDeviation, numberItem(signedMm(module.deviation)));
-        modules_->setItem(row, kAngle, numberItem(degrees(module.angle)));
+        modules_->setItem(row, kDeviation, numberItem(MeshWords::signedMm(module.deviation)));
+        modules_->setItem(row, kAngle, numberItem(MeshWords::degrees(module.angle)));
     }
     for (const AlignmentDoubt& doubt : shown_->doubts)
         doubts_->addItem(MeshPresenter::sentenceOf(doubt));

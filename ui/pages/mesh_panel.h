@@ -21,9 +21,6 @@ class MeshPanel : public QWidget {
   public:
     explicit MeshPanel(MeshPresenter& presenter, QWidget* parent = nullptr);
 
-    /// Rows of the figures, for tests and reports.
-    [[nodiscard]] static std::vector<std::pair<QString, QString>> figuresOf(const MeshComparison& comparison);
-
   signals:
     void moduleSelected(skincal::ModuleId module);
 

@@ -3,6 +3,7 @@
 #include <vtkPolyData.h>
 
 #include <QComboBox>
+#include <QtConcurrent/QtConcurrentRun>
 
 #include "ui/scene3d/body_view_widget.h"
 #include "ui/scene3d/mesh_data.h"
@@ -12,6 +13,15 @@ namespace skincal {
 MeshStage::MeshStage(MeshPresenter& presenter, BodyViewWidget& view, QComboBox& colours, QObject* parent)
     : QObject(parent), presenter_(presenter), view_(view), colours_(colours) {
     connect(&presenter, &MeshPresenter::changed, this, &MeshStage::arrange);
+    connect(&ready_, &QFutureWatcherBase::finished, this, [this] {
+        if (shown_ && drawn_ == shown_)
+            view_.setMesh(ready_.result());
+    });
+}
+
+MeshStage::~MeshStage() {
+    ready_.disconnect(this);
+    ready_.waitForFinished();
 }
 
 void MeshStage::arrange() {
@@ -32,7 +42,12 @@ void MeshStage::arrange() {
     for (const ModuleDeviation& module : comparison->modules)
         deviations[module.id] = module.deviation;
     view_.setDeviations(std::move(deviations));
-    view_.setMesh(toPolyData(*presenter_.mesh(), comparison->T_mesh_body.inverse()));
+    // A scan of a body has a million triangles: longer than a frame.
+    drawn_ = comparison;
+    const auto make = [mesh = presenter_.mesh(), T_body_mesh = Isometry3d(comparison->T_mesh_body.inverse())] {
+        return toPolyData(*mesh, T_body_mesh);
+    };
+    ready_.setFuture(QtConcurrent::run(make));
     offerDeviations(true);
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <vtkSmartPointer.h>
+
+#include <QFutureWatcher>
 #include <QObject>
 
 #include "ui/presenters/mesh_presenter.h"
 #include "ui/scene3d/body_words.h"
 
 class QComboBox;
+class vtkPolyData;
 
 namespace skincal {
 
@@ -20,6 +24,9 @@ class MeshStage : public QObject {
     /// @param colours  its items' data are ColourModes
     MeshStage(MeshPresenter& presenter, BodyViewWidget& view, QComboBox& colours, QObject* parent);
 
+    /// Waits for what is being made ready.
+    ~MeshStage() override;
+
   private:
     void arrange();
     void offerDeviations(bool offered);
@@ -28,6 +35,8 @@ class MeshStage : public QObject {
     BodyViewWidget& view_;
     QComboBox& colours_;
     std::shared_ptr<const MeshComparison> shown_;
+    std::shared_ptr<const MeshComparison> drawn_;  ///< of which the mesh is being made ready
+    QFutureWatcher<vtkSmartPointer<vtkPolyData>> ready_;
     int before_ = 0;        ///< the colours chosen before deviations were
     bool isWanted_ = true;  ///< deviations come back by themselves where they were looked at last
 };

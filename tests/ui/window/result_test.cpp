@@ -76,7 +76,7 @@ TEST_F(Result, AMeshDroppedOnTheWindowColoursTheBodyUntilItIsRemoved) {
     ASSERT_TRUE(driven_.waitFor([&] { return isCompared(); }));
     EXPECT_TRUE(offersDeviations());
     EXPECT_EQ(view.colourMode(), ColourMode::Deviation);
-    EXPECT_TRUE(view.isMeshShown());
+    EXPECT_TRUE(driven_.waitFor([&] { return view.isMeshShown(); }));
     EXPECT_TRUE(view.overlay().content().legend.isDiverging);
     EXPECT_FALSE(view.overlay().content().legend.high.isEmpty());
     EXPECT_EQ(rowsOf("deviations"), static_cast<int>(world_.skin.modules.size()));
@@ -205,6 +205,7 @@ TEST(ResultOfTheDemo, ShowsTheBodyOnItsPicturesAndAgainstTheSimulatedBody) {
     auto* deviations = driven.find<QTableWidget>("deviations");
     ASSERT_TRUE(driven.waitFor([&] { return deviations->rowCount() > 0; }));
     EXPECT_EQ(driven.window.bodyView().colourMode(), ColourMode::Deviation);
+    ASSERT_TRUE(driven.waitFor([&] { return driven.window.bodyView().isMeshShown(); }));
     const QString rms = driven.find<QTableWidget>("meshFigures")->item(1, 1)->text();
     EXPECT_LT(rms.split(' ').front().toDouble(), 1.5) << rms.toStdString();
     driven.takePicture("r-mesh");

@@ -113,6 +113,7 @@ MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
     doubts_->setAccessibleName(tr("What to know about the comparison"));
     doubts_->setWordWrap(true);
     doubts_->setSelectionMode(QAbstractItemView::NoSelection);
+    doubts_->setSpacing(2);
     doubts_->setMinimumHeight(64);
     drop_->setAlignment(Qt::AlignCenter);
     drop_->setMinimumHeight(140);

@@ -182,10 +182,10 @@ QString MeshPresenter::sentenceOf(const AlignmentDoubt& doubt) {
                       "occur more than once on this mesh, so where they lie is open.")
                 .arg(mm(doubt.value, 0), mm(doubt.other, 2));
         case AlignmentDoubt::Kind::Slides:
-            return tr("The body may be shifted or turned along the surface with hardly a change (%1 % of the way "
-                      "shows): "
-                      "deviations tell heights, not places.")
-                .arg(100 * doubt.value, 0, 'f', 0);
+            return tr("Shifted or turned by 10 mm along the surface in one direction, modules rise or fall by %1 mm "
+                      "only: "
+                      "deviations tell heights, and little of places.")
+                .arg(10 * doubt.value, 0, 'f', 1);
         case AlignmentDoubt::Kind::OffsetUnknown:
             return tr("How far modules sit above the surface can't be told from where the body is (± %1 mm).")
                 .arg(mm(doubt.value, 1));

@@ -96,6 +96,17 @@ TEST_F(Result, AMeshDroppedOnTheWindowColoursTheBodyUntilItIsRemoved) {
     EXPECT_EQ(rowsOf("deviations"), 0);
 }
 
+TEST_F(Result, OnACylinderItSaysThatThePoseIsOpen) {
+    open("cylinder");
+    drop(drawing());
+    ASSERT_TRUE(driven_.waitFor([&] { return isCompared(); }));
+    auto* doubts = driven_.find<QListWidget>("meshDoubts");
+    ASSERT_GE(doubts->count(), 2);
+    EXPECT_TRUE(doubts->item(0)->text().contains("Another pose")) << doubts->item(0)->text().toStdString();
+    ASSERT_TRUE(driven_.waitFor([&] { return driven_.window.bodyView().isMeshShown(); }));
+    driven_.takePicture("r-doubts");
+}
+
 TEST_F(Result, InTheWrongUnitTheMeshIsRefusedOrDoubted) {
     open("arm");
     drop(drawing());

@@ -6,7 +6,9 @@
 #include "app/command_line.h"
 #include "app/outcome.h"
 #include "core/formats/files.h"
+#include "core/formats/stl_file.h"
 #include "core/formats/truth_json.h"
+#include "core/simulation/body_surface.h"
 #include "core/workflow/simulated_recording.h"
 
 namespace skincal {
@@ -16,6 +18,7 @@ struct SimulateArguments {
     std::string scenario;
     std::filesystem::path output;
     std::filesystem::path truth;
+    std::filesystem::path mesh;
     std::uint64_t seed = 1;
     bool list = false;
     bool force = false;
@@ -68,6 +71,12 @@ int runSimulate(const SimulateArguments& arguments) {
     planned.detectionsFile = "detections.csv";
     if (const auto complaint = complaintAboutTruth(arguments, planned))
         return badInput(*complaint);
+    if (!arguments.mesh.empty()) {
+        if (const auto complaint = complaintAboutOutput(arguments.mesh))
+            return badInput(*complaint);
+        if (!arguments.truth.empty() && sameFile(arguments.mesh, arguments.truth))
+            return badInput("expected different files for the truth and the mesh");
+    }
     {
         TerminalProgress progress;
         const auto written = writeSimulation(world, arguments.output, arguments.force, progress.context());
@@ -78,12 +87,21 @@ int runSimulate(const SimulateArguments& arguments) {
         if (const auto written = writeTruth(truthOf(world), arguments.truth); !written)
             return badInput(written.error().message());
     }
+    if (!arguments.mesh.empty()) {
+        // Drawings are in millimetres.
+        const std::string bytes = stlBytes(scaled(bodySurface(world), 1e3));
+        if (const auto written = writeFileAtomically(arguments.mesh, bytes); !written)
+            return badInput(written.error().message());
+    }
     if (arguments.json) {
         nlohmann::ordered_json json;
         json["output"] = arguments.output.string();
         json["truth"] = nullptr;
         if (!arguments.truth.empty())
             json["truth"] = arguments.truth.string();
+        json["mesh"] = nullptr;
+        if (!arguments.mesh.empty())
+            json["mesh"] = arguments.mesh.string();
         json["scenario"] = scenario->name;
         json["seed"] = arguments.seed;
         json["modules"] = world.T_r_u.size();
@@ -106,6 +124,8 @@ void addSimulateCommand(CommandLine& line) {
     command->add_option("SCENARIO", arguments->scenario, "One of --list");
     command->add_option("-o,--output", arguments->output, "The *.skinrec directory to write");
     command->add_option("--truth", arguments->truth, "Also write what is true, for skincal compare");
+    command->add_option("--mesh", arguments->mesh,
+                        "Also write the true surface of the body (STL, millimetres), for the window's comparison");
     addSeedOption(*command, arguments->seed, "Same seed, same bytes");
     command->add_flag("--list", arguments->list, "Name the scenarios");
     command->add_flag("--force", arguments->force, "Overwrite a recording that is there");

@@ -212,4 +212,13 @@ std::vector<Isometry3d> bendOntoSurface(const PatchLayout& layout, const ModuleT
     return poses;
 }
 
+std::vector<Vector3d> surfacePoints(const PatchPlan& plan, const ModuleTemplate& type, std::uint64_t seed,
+                                    const std::vector<Vector2d>& points) {
+    const Relief relief = makeRelief(plan.radius, seed);
+    std::vector<Vector3d> places;
+    for (const Vector2d& point : points)
+        places.emplace_back(surfaceFrame(plan, type, relief, point).translation());
+    return places;
+}
+
 }  // namespace skincal

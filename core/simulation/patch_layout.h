@@ -39,4 +39,9 @@ struct PatchLayout {
 [[nodiscard]] std::vector<Isometry3d> bendOntoSurface(const PatchLayout& layout, const ModuleTemplate& type,
                                                       const PatchPlan& plan, std::uint64_t seed);
 
+/// Points of that surface, in its own frame, over points of the layout's plane; of anything but a cylinder they have
+/// the same x and y.
+[[nodiscard]] std::vector<Vector3d> surfacePoints(const PatchPlan& plan, const ModuleTemplate& type, std::uint64_t seed,
+                                                  const std::vector<Vector2d>& points);
+
 }  // namespace skincal

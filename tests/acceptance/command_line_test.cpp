@@ -11,6 +11,7 @@
 
 #include "core/formats/body_json.h"
 #include "core/formats/image_header.h"
+#include "core/formats/stl_file.h"
 #include "tests/acceptance/program.h"
 #include "tests/unit/formats/temporary_directory.h"
 
@@ -102,6 +103,10 @@ TEST_F(CommandLineTest, EveryCommandThatSaysJsonPrintsNothingElse) {
     };
     EXPECT_GT(json("simulate --list --json").size(), 5U);
     EXPECT_EQ(json("simulate plane --json -o " + at("w") + " --truth " + at("w/truth.json"))["modules"], 36);
+    EXPECT_EQ(json("simulate arm --json -o " + at("a") + " --mesh " + at("arm.stl"))["mesh"], at("arm.stl"));
+    const auto mesh = readStl(directory_ / "arm.stl");
+    ASSERT_TRUE(mesh) << mesh.error().message();
+    EXPECT_GT(enclosedVolume(*mesh).value_or(0), 1e6) << "mm^3";
     // A path that is no UTF-8.
     const auto result = json("calibrate --json " + at("w") + " -o " + at("$(printf 'b\\377').json"));
     EXPECT_THAT(result["output"].get<std::string>(), HasSubstr("b\uFFFD.json"));
@@ -150,6 +155,7 @@ TEST_F(CommandLineTest, OutputsThatWouldDestroyOrCanNotBeWrittenAreRefusedFirst)
     EXPECT_THAT(run("calibrate " + at("w") + " -o " + at("no/b.json")).error, HasSubstr("there is no directory"));
     EXPECT_EQ(run("reproduce-paper --trials 100000 --json " + at("no/b.json")).code, 2);
     EXPECT_EQ(run("simulate plane -o " + at("v") + " --truth " + at("no/t.json")).code, 2);
+    EXPECT_EQ(run("simulate plane -o " + at("v") + " --mesh " + at("no/t.stl")).code, 2);
     EXPECT_EQ(run("simulate plane -o " + at("v") + " --truth " + at("v/gravity.csv")).code, 2);
     EXPECT_FALSE(std::filesystem::exists(at("v")));
     ASSERT_EQ(run("calibrate " + at("w") + " -o " + at("b.json")).code, 0);

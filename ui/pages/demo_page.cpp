@@ -20,7 +20,9 @@ constexpr int kTick_ms = 10;  // of the slider
 constexpr double kSpan_s = std::chrono::duration<double>(DemoPresenter::Time(TactileHistory::kSpan)).count();
 
 QColor colourOf(std::size_t place) {
-    const QColor colour = patchTint(static_cast<unsigned>(place));
+    // The bright ones first: curves are thin.
+    constexpr std::array<unsigned, 8> kOrder{4, 1, 2, 3, 0, 5, 6, 7};
+    const QColor colour = patchTint(kOrder.at(static_cast<std::size_t>(place) % kOrder.size()));
     return Theme::current().isDark ? colour : colour.darker(125);
 }
 

@@ -1,11 +1,15 @@
 #include "ui/pages/result_page.h"
 
+#include <QEvent>
 #include <QHeaderView>
 #include <QListWidget>
+#include <QTabWidget>
 #include <QTableWidget>
 #include <algorithm>
 #include <cmath>
 
+#include "ui/pages/mesh_panel.h"
+#include "ui/pages/picture_panel.h"
 #include "ui/widgets/theme.h"
 
 namespace skincal {
@@ -35,9 +39,12 @@ std::vector<double> positionSigmas(const BodyModel& body) {
 
 }  // namespace
 
-ResultPage::ResultPage(Workbench& workbench, QWidget* parent)
+ResultPage::ResultPage(Workbench& workbench, MeshPresenter& mesh, QWidget* parent)
     : Page(tr("Result"), tr("Every placed module, how well it is known, and whether to believe it."), parent),
       workbench_(workbench),
+      mesh_(mesh),
+      tabs_(new QTabWidget),
+      pictures_(new PicturePanel(workbench)),
       verdict_(new QLabel),
       reason_(mutedLabel()),
       figures_(new QTableWidget),
@@ -45,6 +52,49 @@ ResultPage::ResultPage(Workbench& workbench, QWidget* parent)
     verdict_->setObjectName(QStringLiteral("instruction"));
     body().addWidget(verdict_);
     body().addWidget(reason_);
+    auto* panel = new MeshPanel(mesh);
+    meshPanel_ = panel;
+    tabs_->setObjectName(QStringLiteral("resultTabs"));
+    tabs_->setAccessibleName(tr("What to look at"));
+    const auto add = [&](QWidget* widget, const QString& name, const QString& what) {
+        tabs_->setTabToolTip(tabs_->addTab(widget, name), what);
+    };
+    add(buildQuality(), tr("Quality"), tr("The figures, and what to know about them"));
+    add(pictures_, tr("On the pictures"), tr("The body drawn on the picture of a view"));
+    add(panel, tr("Against a mesh"), tr("How far the modules lie above a surface of the body"));
+    body().addWidget(tabs_, 1);
+    connect(pictures_, &PicturePanel::moduleSelected, this, &ResultPage::moduleSelected);
+    connect(panel, &MeshPanel::moduleSelected, this, &ResultPage::moduleSelected);
+    connect(&workbench.session(), &Session::solutionChanged, this, &ResultPage::refresh);
+    connect(&workbench.session(), &Session::solvingChanged, this, &ResultPage::refresh);
+    refresh();
+}
+
+void ResultPage::setActive(bool active) {
+    pictures_->setActive(active);
+    mesh_.setActive(active);
+}
+
+void ResultPage::changeEvent(QEvent* event) {
+    // The verdict's colour is one of the theme's.
+    if (event->type() == QEvent::PaletteChange)
+        refresh();
+    Page::changeEvent(event);
+}
+
+void ResultPage::showMesh() {
+    tabs_->setCurrentWidget(meshPanel_);
+}
+
+void ResultPage::setSelected(std::optional<ModuleId> module) {
+    pictures_->setSelected(module);
+}
+
+QWidget* ResultPage::buildQuality() {
+    auto* quality = new QWidget;
+    auto* column = new QVBoxLayout(quality);
+    column->setContentsMargins(12, 12, 12, 12);
+    column->setSpacing(8);
     figures_->setColumnCount(2);
     figures_->setObjectName(QStringLiteral("figures"));
     figures_->setAccessibleName(tr("Quality"));
@@ -54,14 +104,12 @@ ResultPage::ResultPage(Workbench& workbench, QWidget* parent)
     figures_->horizontalHeader()->setStretchLastSection(true);
     figures_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     figures_->setSelectionMode(QAbstractItemView::NoSelection);
-    body().addWidget(figures_, 3);
-    body().addWidget(mutedLabel(tr("What to know about it:")));
+    column->addWidget(figures_, 3);
+    column->addWidget(mutedLabel(tr("What to know about it:")));
     reasons_->setWordWrap(true);
     reasons_->setAccessibleName(tr("Reasons for the verdict"));
-    body().addWidget(reasons_, 2);
-    connect(&workbench.session(), &Session::solutionChanged, this, &ResultPage::refresh);
-    connect(&workbench.session(), &Session::solvingChanged, this, &ResultPage::refresh);
-    refresh();
+    column->addWidget(reasons_, 2);
+    return quality;
 }
 
 std::vector<std::pair<QString, QString>> ResultPage::figuresOf(const Solution& solution) {

@@ -10,6 +10,7 @@
 #include "core/camera/frame_source.h"
 #include "core/camera_calibration/board_plan.h"
 #include "core/device/skin_device.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/session/session.h"
 
 namespace skincal {
@@ -37,6 +38,8 @@ struct RigHands {
     /// Shows such a calibration board to the camera from all sides, until putBoardAway().
     std::function<void(const BoardPlan&)> holdBoard;
     std::function<void()> putBoardAway;
+    /// The true surface of the body, m, in a frame of its own, as a drawing of it would be.
+    std::function<TriangleMesh()> bodySurface;
     /// What the maker of the camera says of its lens.
     std::optional<CameraModel> intrinsics;
 };

@@ -121,6 +121,25 @@ ModuleValues lastViews(const BodyModel& body) {
     return result;
 }
 
+ModuleValues deviations_mm(const BodyModel& body, const std::map<ModuleId, double>& deviations) {
+    ModuleValues result{std::vector<std::optional<double>>(body.modules.size()), -1, 1};
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < body.modules.size(); ++i) {
+        const auto found = deviations.find(body.modules[i].id);
+        if (found == deviations.end())
+            continue;
+        result.values[i] = 1e3 * found->second;
+        sizes.push_back(std::abs(1e3 * found->second));
+    }
+    if (sizes.empty())
+        return result;
+    // Colours of a micrometre would make much of nothing.
+    constexpr double kLeast_mm = 0.1;
+    result.high = std::max(kLeast_mm, rounded(quantile(std::move(sizes), 0.95), std::ceil));
+    result.low = -result.high;
+    return result;
+}
+
 double ellipsoidScale(const BodyModel& body) {
     std::vector<double> sigmas;
     double board = 0;

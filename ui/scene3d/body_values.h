@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ struct ModuleValues {
 
 /// The position in BodyModel::views of the last view that found each module; range from 0 to the last view.
 [[nodiscard]] ModuleValues lastViews(const BodyModel& body);
+
+/// Deviations from a surface (m, by module) as mm; the range is as wide to both sides of 0, and holds 95 % of them.
+[[nodiscard]] ModuleValues deviations_mm(const BodyModel& body, const std::map<ModuleId, double>& deviations);
 
 /// How much to enlarge ellipsoids of three standard deviations so that they can be seen and seldom meet: 1, 2 or 5
 /// times a power of ten, never below 1.

@@ -47,7 +47,7 @@ void BodyViewWidget::setBody(std::shared_ptr<const BodyModel> body) {
         actors_->show(*body_, layout_);
     else
         actors_->clear();
-    values_ = body_ ? valuesOf(*body_, mode_) : std::nullopt;
+    findValues();
     const auto gone = [&](ModuleId id) { return layout_.find(id) == nullptr; };
     if (std::any_of(measured_.begin(), measured_.end(), gone))
         measured_.clear();
@@ -63,6 +63,13 @@ void BodyViewWidget::setBody(std::shared_ptr<const BodyModel> body) {
         resetView();
 }
 
+void BodyViewWidget::findValues() {
+    if (!body_)
+        values_ = std::nullopt;
+    else
+        values_ = mode_ == ColourMode::Deviation ? deviations_mm(*body_, deviations_) : valuesOf(*body_, mode_);
+}
+
 void BodyViewWidget::recolour() {
     actors_->setColours(coloursOf(layout_, mode_, values_, live_, dark_));
     scene_->requestDraw();
@@ -72,7 +79,7 @@ void BodyViewWidget::setColourMode(ColourMode mode) {
     if (mode == mode_)
         return;
     mode_ = mode;
-    values_ = body_ ? valuesOf(*body_, mode_) : std::nullopt;
+    findValues();
     recolour();
     updateWords();
 }
@@ -136,8 +143,18 @@ void BodyViewWidget::setSelected(std::vector<ModuleId> modules) {
 }
 
 void BodyViewWidget::setMesh(vtkPolyData* mesh) {
+    isMeshShown_ = mesh != nullptr;
     actors_->setMesh(mesh);
     scene_->requestDraw();
+}
+
+void BodyViewWidget::setDeviations(std::map<ModuleId, double> deviations) {
+    deviations_ = std::move(deviations);
+    if (mode_ != ColourMode::Deviation)
+        return;
+    findValues();
+    recolour();
+    updateWords();
 }
 
 void BodyViewWidget::setDark(bool dark) {

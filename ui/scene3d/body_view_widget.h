@@ -2,6 +2,7 @@
 
 #include <QImage>
 #include <QWidget>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,6 +64,10 @@ class BodyViewWidget : public QWidget {
 
     /// The robot's surface, body frame, m, drawn translucent round the skin; null takes it away.
     void setMesh(vtkPolyData* mesh);
+    [[nodiscard]] bool isMeshShown() const { return isMeshShown_; }
+    /// How far modules lie above (or, negative, below) that surface, m; shown in ColourMode::Deviation, where modules
+    /// without one count as unknown.
+    void setDeviations(std::map<ModuleId, double> deviations);
 
     void setDark(bool dark);
     [[nodiscard]] bool dark() const { return dark_; }
@@ -118,6 +123,7 @@ class BodyViewWidget : public QWidget {
   private:
     void click(const QPointF& position);
     void measureTo(ModuleId module);
+    void findValues();
     void recolour();
     void updateEllipsoids();
     void updateGuides();
@@ -134,6 +140,7 @@ class BodyViewWidget : public QWidget {
     SceneLayout layout_;
     std::optional<ModuleValues> values_;
     std::vector<float> live_;
+    std::map<ModuleId, double> deviations_;
     QString valueTitle_, valueLow_, valueHigh_;
     ColourMode mode_ = ColourMode::Patch;
     double ellipsoidScale_ = 0;  ///< 0 while they are hidden
@@ -141,6 +148,7 @@ class BodyViewWidget : public QWidget {
     bool cameras_ = true;
     bool dark_ = true;
     bool measuring_ = false;
+    bool isMeshShown_ = false;
     bool movedByUser_ = false;
     bool focusFrame_ = false;
     std::optional<Isometry3d> guideCamera_;

@@ -64,7 +64,10 @@ std::vector<Rgb> coloursOf(const SceneLayout& layout, ColourMode mode, const std
                          : unknownColour(dark);
         } else if (values) {
             const auto share = values->share(module.index);
-            colour = share ? valueColour(*share, dark) : unknownColour(dark);
+            const auto known = [&](double at) {
+                return mode == ColourMode::Deviation ? divergingColour(at) : valueColour(at, dark);
+            };
+            colour = share ? known(*share) : unknownColour(dark);
         }
         colours.push_back(layout.anyPlaced && !module.placed ? faded(colour, dark) : colour);
     }
@@ -120,6 +123,13 @@ Legend BodyWords::legend(const BodyModel& body, const SceneLayout& layout, Colou
             if (any)
                 bar(QString::fromStdString(body.views.front().name), QString::fromStdString(body.views.back().name));
             unknown(tr("in no picture"));
+            break;
+        case ColourMode::Deviation:
+            legend.title = tr("Above the mesh");
+            legend.isDiverging = true;
+            if (any)
+                bar(tr("−%1 mm").arg(number(values->high)), tr("+%1 mm").arg(number(values->high)));
+            unknown(tr("beside the mesh"));
             break;
         case ColourMode::Plain:
             break;

@@ -20,17 +20,19 @@ enum class ColourMode {
     ViewCount,    ///< how many views saw it
     LastView,     ///< which view was the last to see it
     Plain,
-    Values,  ///< what setCellValues says, 0 to 1
+    Deviation,  ///< how far it lies above or below a surface, what setDeviations says
+    Values,     ///< what setCellValues says, 0 to 1
 };
 
-/// The numbers behind a colour mode; nothing for Patch, Plain and Values.
+/// The numbers behind a colour mode; nothing for Patch, Plain and Values, nor Deviation, which no
+/// body model knows (deviations_mm).
 [[nodiscard]] std::optional<ModuleValues> valuesOf(const BodyModel& body, ColourMode mode);
 
 /// Words about what a scene shows, in the user's language.
 class BodyWords {
     Q_DECLARE_TR_FUNCTIONS(BodyWords)
   public:
-    /// @param values  valuesOf(body, mode).
+    /// @param values  valuesOf(body, mode), or deviations_mm.
     [[nodiscard]] static Legend legend(const BodyModel& body, const SceneLayout& layout, ColourMode mode,
                                        const std::optional<ModuleValues>& values, bool dark);
     [[nodiscard]] static QString ellipsoids(double scale);

@@ -17,6 +17,26 @@ constexpr std::array<Rgb, 9> kViridis{{{68, 1, 84},
                                        {170, 220, 50},
                                        {253, 231, 37}}};
 
+constexpr std::array<Rgb, 11> kBlueYellowRed{{{49, 54, 149},
+                                              {69, 117, 180},
+                                              {116, 173, 209},
+                                              {171, 217, 233},
+                                              {224, 243, 248},
+                                              {255, 255, 191},
+                                              {254, 224, 144},
+                                              {253, 174, 97},
+                                              {244, 109, 67},
+                                              {215, 48, 39},
+                                              {165, 0, 38}}};
+
+/// @param at  0 to 1
+template <std::size_t N>
+Rgb between(const std::array<Rgb, N>& colours, double at) {
+    const double place = at * (N - 1);
+    const auto below = std::min(static_cast<std::size_t>(place), N - 2);
+    return mixed(colours.at(below), colours.at(below + 1), place - static_cast<double>(below));
+}
+
 }  // namespace
 
 Rgb mixed(const Rgb& a, const Rgb& b, double share) {
@@ -35,9 +55,11 @@ Rgb toRgb(const std::array<double, 3>& colour) {
 Rgb valueColour(double value, bool dark) {
     constexpr double kCut = 0.1;
     const double v = std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 0.0;
-    const double at = (kCut * (dark ? 1 : 0) + (1 - kCut) * v) * (kViridis.size() - 1);
-    const auto below = std::min(static_cast<std::size_t>(at), kViridis.size() - 2);
-    return mixed(kViridis.at(below), kViridis.at(below + 1), at - static_cast<double>(below));
+    return between(kViridis, kCut * (dark ? 1 : 0) + (1 - kCut) * v);
+}
+
+Rgb divergingColour(double value) {
+    return between(kBlueYellowRed, std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 0.5);
 }
 
 Rgb unknownColour(bool dark) {

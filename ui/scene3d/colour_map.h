@@ -12,6 +12,11 @@ using Rgb = std::array<std::uint8_t, 3>;
 /// @param value  0 to 1, others count as the nearest of these.
 [[nodiscard]] Rgb valueColour(double value, bool dark);
 
+/// Blue below, pale yellow in the middle, red above: evenly bright to both sides, told apart without seeing red and
+/// green, and no grey, which means unknown. ColorBrewer's RdYlBu (Harrower and Brewer).
+/// @param value  0 to 1, the middle at 0.5; others count as the nearest of these.
+[[nodiscard]] Rgb divergingColour(double value);
+
 /// Of modules without a value.
 [[nodiscard]] Rgb unknownColour(bool dark);
 

@@ -202,7 +202,8 @@ void SceneOverlay::paintLegend(QPainter& painter) const {
         const QRectF strip(row.left(), row.top() + 0.2 * line, width, 0.55 * line);
         QLinearGradient gradient(strip.topLeft(), strip.topRight());
         for (int i = 0; i <= 16; ++i)
-            gradient.setColorAt(i / 16.0, toQt(valueColour(i / 16.0, content_.dark)));
+            gradient.setColorAt(
+                i / 16.0, toQt(legend.isDiverging ? divergingColour(i / 16.0) : valueColour(i / 16.0, content_.dark)));
         painter.setPen(Qt::NoPen);
         painter.setBrush(gradient);
         painter.drawRoundedRect(strip, 2.5, 2.5);
@@ -210,6 +211,8 @@ void SceneOverlay::paintLegend(QPainter& painter) const {
         painter.setPen(ink());
         painter.drawText(row, Qt::AlignLeft | Qt::AlignVCenter, legend.low);
         painter.drawText(row, Qt::AlignRight | Qt::AlignVCenter, legend.high);
+        if (legend.isDiverging)
+            painter.drawText(row, Qt::AlignCenter, QStringLiteral("0"));
         row.translate(0, line);
     }
     drawEntries(legend.more);

@@ -24,6 +24,7 @@ struct Legend {
     QString title;
     std::vector<LegendEntry> entries;
     QString low, high;              ///< ends of a colour bar; no bar where both are empty
+    bool isDiverging = false;       ///< the bar: colours to both sides of 0
     std::vector<LegendEntry> more;  ///< below it: what else is drawn
 };
 

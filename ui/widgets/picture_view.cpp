@@ -29,6 +29,11 @@ void PictureView::setMarks(std::vector<PictureMark> marks) {
     update();
 }
 
+void PictureView::setShapes(std::vector<PictureShape> shapes) {
+    shapes_ = std::move(shapes);
+    update();
+}
+
 void PictureView::setSelected(std::optional<ModuleId> module) {
     selected_ = module;
     update();
@@ -56,6 +61,26 @@ QPointF PictureView::toWidget(const QPointF& pixel) const {
     return transform().map(pixel + QPointF(0.5, 0.5));
 }
 
+void PictureView::paintShapes(QPainter& painter) const {
+    for (const PictureShape& shape : shapes_) {
+        const QPolygonF outline = transform().map(shape.outline.translated(0.5, 0.5));
+        const bool isSelected = selected_ == shape.module;
+        QColor line = shape.colour;
+        QColor fill = shape.colour;
+        line.setAlpha(shape.isDim && !isSelected ? 130 : 255);
+        fill.setAlpha(shape.isDim ? 0 : isSelected ? 90 : 40);
+        // Dark under light is seen on every ground.
+        if (!shape.isDim || isSelected) {
+            painter.setBrush(Qt::NoBrush);
+            painter.setPen(QPen(QColor(0, 0, 0, 150), isSelected ? 5 : 3));
+            painter.drawPolygon(outline);
+        }
+        painter.setBrush(fill);
+        painter.setPen(QPen(line, isSelected ? 3 : 1.5, shape.isDim ? Qt::DotLine : Qt::SolidLine));
+        painter.drawPolygon(outline);
+    }
+}
+
 void PictureView::paintEvent(QPaintEvent*) {
     const Theme theme = Theme::current();
     QPainter painter(this);
@@ -71,12 +96,13 @@ void PictureView::paintEvent(QPaintEvent*) {
     painter.drawImage(QPointF(0, 0), image_);
     painter.resetTransform();
     painter.setRenderHint(QPainter::Antialiasing);
+    paintShapes(painter);
     for (const PictureMark& mark : marks_) {
         const QPointF at = toWidget(mark.pixel);
         const bool isSelected = selected_ && selected_ == mark.module;
         painter.setPen(QPen(mark.colour, isSelected ? 3 : 1.6));
         painter.setBrush(Qt::NoBrush);
-        const double radius = isSelected ? 11 : 7;
+        const double radius = isSelected ? 1.5 * mark.radius : mark.radius;
         painter.drawEllipse(at, radius, radius);
         if (mark.isCrossed) {
             painter.drawLine(at + QPointF(-radius, -radius), at + QPointF(radius, radius));
@@ -134,8 +160,16 @@ void PictureView::mouseReleaseEvent(QMouseEvent* event) {
             nearest = &mark;
         }
     }
-    if (nearest != nullptr)
+    if (nearest != nullptr) {
         emit markClicked(*nearest->module);
+        return;
+    }
+    for (const PictureShape& shape : shapes_) {
+        if (!shape.isDim && transform().map(shape.outline).containsPoint(event->position(), Qt::OddEvenFill)) {
+            emit markClicked(shape.module);
+            return;
+        }
+    }
 }
 
 void PictureView::mouseDoubleClickEvent(QMouseEvent*) {

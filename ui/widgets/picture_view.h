@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QImage>
+#include <QPolygonF>
 #include <QWidget>
 #include <optional>
 #include <vector>
@@ -17,6 +18,15 @@ struct PictureMark {
     bool isCrossed = false;             ///< what does not count
     bool isNamed = false;               ///< with the module's number beside it, not only where there is room
     std::optional<QPointF> expected{};  ///< where the body has it; a line leads there
+    double radius = 7;                  ///< of its ring, on the screen
+};
+
+/// An outline on a picture, under the marks.
+struct PictureShape {
+    QPolygonF outline;  ///< px, closed by itself
+    QColor colour;
+    ModuleId module;
+    bool isDim = false;  ///< drawn faintly and broken: what the picture can't show
 };
 
 /// A camera's picture, as large as the widget allows, with marks that can be clicked. The wheel zooms, a drag shifts.
@@ -29,6 +39,8 @@ class PictureView : public QWidget {
     [[nodiscard]] const QImage& image() const { return image_; }
     void setMarks(std::vector<PictureMark> marks);
     [[nodiscard]] const std::vector<PictureMark>& marks() const { return marks_; }
+    void setShapes(std::vector<PictureShape> shapes);
+    [[nodiscard]] const std::vector<PictureShape>& shapes() const { return shapes_; }
     void setSelected(std::optional<ModuleId> module);
     /// What stands in the middle while there is no picture.
     void setPlaceholder(const QString& text);
@@ -52,9 +64,11 @@ class PictureView : public QWidget {
 
   private:
     [[nodiscard]] QTransform transform() const;
+    void paintShapes(QPainter& painter) const;
 
     QImage image_;
     std::vector<PictureMark> marks_;
+    std::vector<PictureShape> shapes_;
     std::optional<ModuleId> selected_;
     QString placeholder_;
     double zoom_ = 1;

@@ -69,8 +69,8 @@ QString Theme::styleSheet() const {
 
 QColor patchTint(unsigned patch) {
     // Okabe and Ito, without black.
-    static constexpr std::array<const char*, 8> kTints{"#56b4e9", "#e69f00", "#009e73", "#cc79a7",
-                                                       "#0072b2", "#d55e00", "#f0e442", "#999999"};
+    static constexpr std::array<const char*, 8> kTints{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
+                                                       "#56b4e9", "#d55e00", "#f0e442", "#8c8c99"};
     return QColor(kTints.at(patch % kTints.size()));
 }
 

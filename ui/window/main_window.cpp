@@ -30,6 +30,7 @@
 #include "ui/scene3d/body_view_widget.h"
 #include "ui/widgets/theme.h"
 #include "ui/window/demo_stage.h"
+#include "ui/window/mesh_stage.h"
 #include "ui/window/step_delegate.h"
 
 namespace skincal {
@@ -51,6 +52,7 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
       preview_(workbench, scan_, views_),
       export_(workbench),
       demo_(workbench),
+      mesh_(workbench),
       steps_(workbench, connection_, scan_),
       problems_(workbench, connection_, scan_) {
     setWindowTitle(tr("SkinCal[*]"));
@@ -61,6 +63,7 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
     buildToolBar();
     auto* demo = new DemoStage(demo_, *static_cast<DemoPage*>(pages_.at(indexOf(Step::Demo))), *body_, this);
     connect(demo, &DemoStage::activeChanged, colours_, &QWidget::setDisabled);
+    new MeshStage(mesh_, *body_, *colours_, this);
 
     Session& session = workbench_.session();
     connect(&session, &Session::solutionChanged, this, &MainWindow::showBody);
@@ -113,10 +116,10 @@ void MainWindow::buildPages() {
     auto* cameraPage = new CameraPage(workbench_, scan_);
     auto* scanPage = new ScanPage(workbench_, scan_);
     auto* viewsPage = new ViewsPage(views_, scan_, preview_);
-    auto* resultPage = new ResultPage(workbench_);
+    result_ = new ResultPage(workbench_, mesh_);
     auto* exportPage = new ExportPage(export_);
     auto* demoPage = new DemoPage(demo_);
-    pages_ = {connectPage, posePage, cameraPage, scanPage, viewsPage, resultPage, exportPage, demoPage};
+    pages_ = {connectPage, posePage, cameraPage, scanPage, viewsPage, result_, exportPage, demoPage};
     for (Page* page : pages_) {
         if (page != nullptr)
             stack_->addWidget(page);
@@ -124,6 +127,7 @@ void MainWindow::buildPages() {
     connect(connectPage, &ConnectPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
     connect(posePage, &PosePage::modulesSelected, this, &MainWindow::showModules);
     connect(scanPage, &ScanPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
+    connect(result_, &ResultPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
     connect(viewsPage, &ViewsPage::scanAsked, this, [this] {
         showStep(Step::Scan);
         scan_.start();
@@ -171,6 +175,7 @@ QWidget* MainWindow::buildBody() {
     auto* bar = new QHBoxLayout;
     bar->setContentsMargins(10, 6, 10, 6);
     colours_ = new QComboBox;
+    colours_->setObjectName(QStringLiteral("colours"));
     colours_->setAccessibleName(tr("Colours of the body"));
     colours_->setToolTip(tr("What the colours of the modules tell"));
     const std::vector<std::pair<QString, ColourMode>> modes{{tr("Patch"), ColourMode::Patch},
@@ -367,6 +372,13 @@ void MainWindow::showBody() {
 
 void MainWindow::showModules(const std::vector<ModuleId>& modules) {
     body_->setSelected(modules);
+    result_->setSelected(modules.size() == 1 ? std::optional(modules.front()) : std::nullopt);
+}
+
+void MainWindow::openMesh(const QString& file) {
+    showStep(Step::Result);
+    result_->showMesh();
+    mesh_.open(file);
 }
 
 void MainWindow::refresh() {
@@ -412,8 +424,13 @@ void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
 
 void MainWindow::dropEvent(QDropEvent* event) {
     const auto urls = event->mimeData()->urls();
-    if (!urls.isEmpty() && urls.first().isLocalFile())
-        openRecording(urls.first().toLocalFile());
+    if (urls.isEmpty() || !urls.first().isLocalFile())
+        return;
+    const QString file = urls.first().toLocalFile();
+    if (file.endsWith(QStringLiteral(".stl"), Qt::CaseInsensitive))
+        openMesh(file);
+    else
+        openRecording(file);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

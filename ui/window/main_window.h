@@ -7,6 +7,7 @@
 #include "core/session/session_keeper.h"
 #include "ui/presenters/demo_presenter.h"
 #include "ui/presenters/export_presenter.h"
+#include "ui/presenters/mesh_presenter.h"
 #include "ui/presenters/pose_presenter.h"
 #include "ui/presenters/problem_model.h"
 #include "ui/presenters/step_model.h"
@@ -23,6 +24,7 @@ namespace skincal {
 
 class BodyViewWidget;
 class Page;
+class ResultPage;
 
 /// The window: steps on the left, the page in the middle, the body on the right, what is wrong below.
 class MainWindow : public QMainWindow {
@@ -61,6 +63,7 @@ class MainWindow : public QMainWindow {
     void jumpTo(int problem);
     void save(bool elsewhere);
     void showModules(const std::vector<ModuleId>& modules);
+    void openMesh(const QString& file);
 
     Workbench& workbench_;
     ConnectPresenter connection_;
@@ -70,12 +73,14 @@ class MainWindow : public QMainWindow {
     ViewPreview preview_;
     ExportPresenter export_;
     DemoPresenter demo_;
+    MeshPresenter mesh_;
     StepModel steps_;
     ProblemModel problems_;
 
     QListView* stepList_ = nullptr;
     QStackedWidget* stack_ = nullptr;
     std::array<Page*, kSteps.size()> pages_{};
+    ResultPage* result_ = nullptr;
     BodyViewWidget* body_ = nullptr;
     QComboBox* colours_ = nullptr;
     QListView* problemList_ = nullptr;

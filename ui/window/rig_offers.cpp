@@ -4,6 +4,7 @@
 
 #include "core/rig/simulated_camera.h"
 #include "core/rig/simulated_skin.h"
+#include "core/simulation/body_surface.h"
 
 namespace skincal {
 namespace {
@@ -41,6 +42,7 @@ void offerRig(Workbench& workbench, SimulatedRig& rig) {
     hands.release = [&rig] { rig.release(); };
     hands.holdBoard = [&rig](const BoardPlan& plan) { rig.holdBoard(plan); };
     hands.putBoardAway = [&rig] { rig.putBoardAway(); };
+    hands.bodySurface = [&rig] { return bodySurface(rig.world()); };
     hands.intrinsics = rig.world().scenario.camera;
     workbench.hands = std::move(hands);
 }

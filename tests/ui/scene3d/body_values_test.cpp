@@ -44,6 +44,34 @@ TEST(BodyValues, AreAbsentWhereNothingIsKnown) {
         EXPECT_FALSE(values.share(i));
 }
 
+TEST(BodyValues, DeviationsAreSpreadEvenlyToBothSidesOfNothing) {
+    const BodyModel body = sampleBody();
+    std::map<ModuleId, double> deviations;
+    for (std::size_t i = 1; i < body.modules.size(); ++i)
+        deviations[body.modules[i].id] = i % 2 ? -0.4e-3 : 0.2e-3;
+    const ModuleValues values = deviations_mm(body, deviations);
+    EXPECT_FALSE(values.values[0]) << "of which nothing was said";
+    EXPECT_NEAR(*values.values[1], -0.4, 1e-12);
+    EXPECT_EQ(values.low, -values.high);
+    EXPECT_NEAR(values.high, 0.4, 0.05);
+    EXPECT_LT(*values.share(1), 0.1);
+    EXPECT_NEAR(*values.share(2), 0.75, 0.05);
+    EXPECT_EQ(deviations_mm(body, {}).low, -deviations_mm(body, {}).high);
+}
+
+TEST(DivergingColours, AreAsBrightToBothSidesAndBlueIsBelow) {
+    const auto brightness = [](const Rgb& colour) { return 0.3 * colour[0] + 0.59 * colour[1] + 0.11 * colour[2]; };
+    for (double away = 0.05; away <= 0.5; away += 0.05) {
+        const Rgb below = divergingColour(0.5 - away);
+        const Rgb above = divergingColour(0.5 + away);
+        EXPECT_GT(below[2], above[2]) << away;
+        EXPECT_LT(below[0], above[0]) << away;
+        EXPECT_NEAR(brightness(below), brightness(above), 35) << away;
+        EXPECT_LT(brightness(above), brightness(divergingColour(0.5 + away - 0.05))) << "darker outwards";
+    }
+    EXPECT_EQ(divergingColour(7), divergingColour(1));
+}
+
 TEST(Ellipsoids, HaveHalfAxesOfThreeStandardDeviationsAlongThePrincipalAxes) {
     Random random(11);
     for (int trial = 0; trial < 50; ++trial) {

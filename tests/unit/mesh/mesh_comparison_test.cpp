@@ -1,0 +1,171 @@
+#include "core/mesh/mesh_comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/mesh/sample_meshes.h"
+
+namespace skincal {
+namespace {
+
+using Kind = AlignmentDoubt::Kind;
+using test::hasDoubt;
+
+/// A body of which part is covered, and the same seen from its own frame.
+struct Covered {
+    TriangleMesh mesh;
+    std::vector<PlacedModule> modules;  ///< body frame
+    Isometry3d T_mesh_body;
+};
+
+Covered covered(std::uint64_t seed, std::size_t count, double offset, double noise) {
+    Random random(seed, "covered");
+    Covered result;
+    result.mesh = test::bumpyBody(random);
+    result.T_mesh_body = test::randomPose(random, 0.5);
+    auto modules = test::modulesOn(result.mesh, count, offset, random, [](const Vector3d& p) { return p.y() > -0.03; });
+    for (PlacedModule& module : modules) {
+        module.T_body_module.translation() += noise * random.normal3();
+        module.T_body_module.linear() = so3Exp(0.01 * random.normal3()) * module.T_body_module.linear();
+    }
+    result.modules = test::movedBy(result.T_mesh_body.inverse(), modules);
+    return result;
+}
+
+double errorOf(const MeshComparison& comparison, const Covered& world) {
+    double sum = 0;
+    for (const PlacedModule& module : world.modules) {
+        const Vector3d p = module.T_body_module.translation();
+        sum += (comparison.T_mesh_body * p - world.T_mesh_body * p).squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(world.modules.size()));
+}
+
+TEST(MeshComparison, FindsPoseAndOffsetOfABodyFromAnyPoseToBeginWith) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const double offset = 1e-3 * static_cast<double>(seed % 4);
+        const Covered world = covered(seed, 60, offset, 0.2e-3);
+        const auto comparison = compareWithMesh(world.modules, world.mesh);
+        ASSERT_TRUE(comparison) << comparison.error().message();
+        EXPECT_LT(errorOf(*comparison, world), 1.2e-3) << "seed " << seed;
+        EXPECT_NEAR(comparison->offset, offset, 0.4e-3) << "seed " << seed;
+        EXPECT_LT(comparison->rms, 0.3e-3) << "seed " << seed;
+        EXPECT_LT(comparison->angle_rms, 3 * kDegree);
+        EXPECT_EQ(comparison->modules.size(), world.modules.size());
+        EXPECT_FALSE(hasDoubt(*comparison, Kind::OtherPoseFits)) << "seed " << seed;
+        EXPECT_FALSE(hasDoubt(*comparison, Kind::Slides)) << "seed " << seed;
+        EXPECT_FALSE(hasDoubt(*comparison, Kind::FitsBadly));
+        EXPECT_GT(comparison->covered, 0.3);
+        EXPECT_LT(comparison->covered, 0.95);
+    }
+}
+
+TEST(MeshComparison, TheSameSeedGivesTheSameResult) {
+    const Covered world = covered(3, 40, 2e-3, 0.3e-3);
+    const auto a = compareWithMesh(world.modules, world.mesh);
+    const auto b = compareWithMesh(world.modules, world.mesh);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->T_mesh_body.matrix(), b->T_mesh_body.matrix());
+    EXPECT_EQ(a->rms, b->rms);
+}
+
+TEST(MeshComparison, AModuleThatSitsElsewhereStandsOutAndMovesNoOther) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        Covered world = covered(seed, 60, 2e-3, 0.1e-3);
+        Random random(seed, "displaced");
+        PlacedModule& victim = world.modules[random.index(world.modules.size())];
+        const double height = (seed % 2 ? 1 : -1) * random.uniform(4e-3, 9e-3);
+        victim.T_body_module.translation() += height * victim.T_body_module.linear().col(2);
+        const auto comparison = compareWithMesh(world.modules, world.mesh);
+        ASSERT_TRUE(comparison);
+        EXPECT_EQ(comparison->worst.id, victim.id) << "seed " << seed;
+        EXPECT_NEAR(comparison->worst.deviation, height, 0.8e-3) << "seed " << seed;
+        EXPECT_LT(comparison->share95, 0.5e-3);
+    }
+}
+
+TEST(MeshComparison, AnOffsetThatIsGivenIsKept) {
+    const Covered world = covered(5, 60, 3e-3, 0.1e-3);
+    MeshComparisonOptions options;
+    options.fitOffset = false;
+    options.offset = 3e-3;
+    const auto comparison = compareWithMesh(world.modules, world.mesh, options);
+    ASSERT_TRUE(comparison);
+    EXPECT_EQ(comparison->offset, 3e-3);
+    EXPECT_LT(comparison->rms, 0.3e-3);
+    EXPECT_FALSE(hasDoubt(*comparison, Kind::OffsetUnknown));
+}
+
+TEST(MeshComparison, ACylinderThatMayTurnAndSlideSaysSo) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        Random random(seed, "cylinder");
+        const TriangleMesh tube = tubeMesh(Vector3d(0, 0, -0.2), Vector3d(0, 0, 0.2), 0.05, 72);
+        auto modules = test::modulesOn(tube, 30, 2e-3, random,
+                                       [](const Vector3d& p) { return std::abs(p.z()) < 0.08 && p.x() > -0.02; });
+        modules = test::movedBy(test::randomPose(random, 0.3), std::move(modules));
+        const auto comparison = compareWithMesh(modules, tube);
+        ASSERT_TRUE(comparison);
+        EXPECT_LT(comparison->rms, 0.5e-3);
+        EXPECT_TRUE(hasDoubt(*comparison, Kind::OtherPoseFits)) << "seed " << seed;
+        EXPECT_TRUE(hasDoubt(*comparison, Kind::Slides)) << "seed " << seed;
+    }
+}
+
+TEST(MeshComparison, OnAPlaneTheOffsetIsNotKnown) {
+    Random random(1, "plane");
+    const TriangleMesh plate{{{-0.2, -0.1, 0}, {0.2, -0.1, 0}, {0.2, 0.1, 0}, {-0.2, 0.1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    const auto comparison = compareWithMesh(test::modulesOn(plate, 30, 2e-3, random), plate);
+    ASSERT_TRUE(comparison);
+    EXPECT_TRUE(hasDoubt(*comparison, Kind::OffsetUnknown));
+    EXPECT_TRUE(hasDoubt(*comparison, Kind::Slides));
+}
+
+TEST(MeshComparison, AMeshOfSomethingElseFitsBadly) {
+    const Covered world = covered(1, 60, 0, 0.1e-3);
+    const TriangleMesh other = tubeMesh(Vector3d(0, 0, -0.2), Vector3d(0, 0, 0.2), 0.03, 60);
+    const auto comparison = compareWithMesh(world.modules, other);
+    EXPECT_TRUE(!comparison || hasDoubt(*comparison, Kind::FitsBadly));
+}
+
+TEST(MeshComparison, AFewModulesOnALargeBodySaySo) {
+    const Covered world = covered(1, 8, 0, 0.1e-3);
+    const auto comparison = compareWithMesh(world.modules, scaled(world.mesh, 6));
+    EXPECT_TRUE(!comparison || hasDoubt(*comparison, Kind::FewCovered));
+}
+
+TEST(MeshComparison, TellsTheUnitFromTheSizes) {
+    const Covered world = covered(2, 30, 0, 0);
+    EXPECT_EQ(likelyUnit(world.modules, world.mesh), MeshUnit::Metre);
+    EXPECT_EQ(likelyUnit(world.modules, scaled(world.mesh, 1000)), MeshUnit::Millimetre);
+}
+
+TEST(MeshComparison, RefusesWhatCanNotBeCompared) {
+    const Covered world = covered(1, 20, 0, 0);
+    const auto codeOf = [](const auto& result) {
+        return result ? std::optional<ErrorCode>() : std::optional(result.error().code);
+    };
+    const std::span all(world.modules);
+    EXPECT_EQ(codeOf(compareWithMesh(all.first(kLeastModulesOnMesh - 1), world.mesh)), ErrorCode::TooFewPoints);
+    EXPECT_EQ(codeOf(compareWithMesh(all, {})), ErrorCode::DegeneratePoints);
+    TriangleMesh broken = world.mesh;
+    broken.vertices.front().x() = std::nan("");
+    EXPECT_EQ(codeOf(compareWithMesh(all, broken)), ErrorCode::NotFinite);
+    RunContext cancelled;
+    cancelled.isCancelled = [] { return true; };
+    EXPECT_EQ(codeOf(compareWithMesh(all, world.mesh, {}, cancelled)), ErrorCode::Cancelled);
+}
+
+TEST(MeshComparison, CancelledHalfWayItStops) {
+    const Covered world = covered(1, 40, 0, 0);
+    for (const int after : {0, 1, 5, 20}) {
+        int asked = 0;
+        RunContext context;
+        context.isCancelled = [&] { return ++asked > after; };
+        const auto result = compareWithMesh(world.modules, world.mesh, {}, context);
+        EXPECT_EQ(result ? ErrorCode::NotConverged : result.error().code, ErrorCode::Cancelled) << after;
+    }
+}
+
+}  // namespace
+}  // namespace skincal

@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include "core/mesh/mesh_surface.h"
+#include "tests/unit/mesh/sample_meshes.h"
+
+namespace skincal {
+namespace {
+
+TEST(SurfaceSamples, LieOnTheSurfaceApartFromEachOtherAndLeaveNoGaps) {
+    Random random(1, "samples");
+    const TriangleMesh mesh = test::bumpyBody(random);
+    const MeshSurface surface(mesh);
+    constexpr std::size_t kCount = 800;
+    const auto points = sampleSurface(mesh, kCount, random);
+    EXPECT_GT(points.size(), kCount * 6 / 10);
+    EXPECT_LT(points.size(), 2 * kCount);
+    const double spacing = 0.7 * std::sqrt(mesh.area() / kCount);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_NEAR(surface.nearest(points[i].position, points[i].normal, 1)->distance, 0, 1e-12);
+        for (std::size_t k = 0; k < i; ++k)
+            EXPECT_GE((points[i].position - points[k].position).norm(), spacing);
+    }
+    const SampledSurface sampled(points);
+    for (const OrientedPoint& other : sampleSurface(mesh, kCount, random))
+        EXPECT_LT((sampled.nearest(other.position).position - other.position).norm(), 2.5 * spacing);
+}
+
+TEST(SurfaceSamples, AMeshWithoutAreaHasNone) {
+    Random random(1, "samples");
+    EXPECT_TRUE(sampleSurface({}, 100, random).empty());
+    EXPECT_THROW((void)SampledSurface({}).nearest(Vector3d::Zero()), std::logic_error);
+}
+
+TEST(SurfaceSamples, BothSidesOfAThinWallHaveTheirOwn) {
+    const TriangleMesh wall = tubeMesh(Vector3d::Zero(), Vector3d(0, 0, 0.001), 0.1, 40);
+    Random random(1, "wall");
+    int up = 0;
+    int down = 0;
+    for (const OrientedPoint& point : sampleSurface(wall, 300, random)) {
+        up += point.normal.z() > 0.9 ? 1 : 0;
+        down += point.normal.z() < -0.9 ? 1 : 0;
+    }
+    EXPECT_GT(up, 80);
+    EXPECT_GT(down, 80);
+}
+
+}  // namespace
+}  // namespace skincal

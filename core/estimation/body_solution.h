@@ -14,6 +14,8 @@ struct BodySolution : InitialEstimate {
     Gauge gauge;
     AdjustmentOptions weights;
     BodyEstimate estimate;  ///< verdicts so far; poses are filled in by describeSolution
+    /// Other solutions that are nearly as likely, each in a frame of its own (see settleViewsByLikelihood).
+    std::vector<BodyState> rivals{};
 
     [[nodiscard]] bool anyViewPlaced() const;
 };

@@ -191,11 +191,13 @@ tl::expected<bool, CalibrationError> settleViewsByLikelihood(BodySolution& solut
     }
     bool changed = turnedBy(best->solution, open, solution) > kSamePlace_rad;
     std::set<std::size_t> undecided;
+    std::vector<BodyState> rivals;
     constexpr int kMostRounds = 8;
     bool moved = true;
     for (int round = 0; moved && round < kMostRounds; ++round) {
         moved = false;
         undecided.clear();
+        rivals.clear();
         for (const Hypothesis& hypothesis : hypothesesOf(best->solution)) {
             auto other = solveElsewhere(*best, hypothesis, options, context);
             if (!other)
@@ -203,8 +205,10 @@ tl::expected<bool, CalibrationError> settleViewsByLikelihood(BodySolution& solut
             if (!*other)
                 continue;
             const double more = (*other)->surprise - best->surprise;
-            if (std::abs(more) < kDecisive)
+            if (std::abs(more) < kDecisive) {
                 undecided.insert(hypothesis.views.begin(), hypothesis.views.end());
+                rivals.push_back((*other)->solution.solved);
+            }
             if (more >= 0)
                 continue;
             best = *std::move(*other);
@@ -215,6 +219,7 @@ tl::expected<bool, CalibrationError> settleViewsByLikelihood(BodySolution& solut
     if (changed)
         solution = std::move(best->solution);
     solution.estimate.undecidedViews.assign(undecided.begin(), undecided.end());
+    solution.rivals = std::move(rivals);
     return changed;
 }
 

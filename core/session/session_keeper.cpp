@@ -24,6 +24,8 @@ SessionKeeper::SessionKeeper(Session& session, const QString& folder, QObject* p
     connect(&timer_, &QTimer::timeout, this, [this] { session_.saveCopy(directory_); });
     connect(&session, &Session::modifiedChanged, this, &SessionKeeper::sessionChanged);
     connect(&session, &Session::saved, this, &SessionKeeper::removeOwn);
+    // A copy that was on its way while the session was saved has come too late.
+    connect(&session, &Session::copied, this, &SessionKeeper::removeOwn);
     // What was not saved before is another document: it stays.
     connect(&session, &Session::opened, this, [this] {
         if (QDir(directory_).exists())

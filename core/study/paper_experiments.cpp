@@ -61,13 +61,31 @@ class Tally {
     double squares_ = 0;
 };
 
-/// Our body; nothing where a picture of it could be of two poses as well: the program says so, and that is no result.
-std::optional<BodyModel> decidedBody(const Measurements& measurements) {
+using Read = std::function<double(const Poses& T_r_v, const Poses& T_r_u)>;
+
+/// The quantity in our body. Nothing where a picture could be of two poses as well, unless it is the same in both but
+/// for `tolerance`: the program says that it does not know, and that is no result.
+std::optional<double> ourQuantity(const Measurements& measurements, bool needViews, const Read& read,
+                                  double tolerance) {
     const GravityTable gravity(measurements.skin, measurements.gravity);
     const auto solution = solveJointly(measurements, gravity);
-    if (!solution || !solution->estimate.undecidedViews.empty())
+    if (!solution || (!solution->estimate.undecidedViews.empty() && solution->rivals.empty()))
         return std::nullopt;
-    return describeSolution(*solution, {});
+    const auto poses = posesOf(describeSolution(*solution, {}), needViews);
+    if (!poses)
+        return std::nullopt;
+    const double value = read(poses->T_r_v, poses->T_r_u);
+    for (const BodyState& rival : solution->rivals) {
+        Poses T_r_v;
+        Poses T_r_u;
+        for (const auto& T : rival.T_r_v)
+            T_r_v.push_back(T.value_or(Isometry3d::Identity()));
+        for (const auto& T : rival.T_r_u)
+            T_r_u.push_back(T.value_or(Isometry3d::Identity()));
+        if (!(std::abs(read(T_r_v, T_r_u) - value) < tolerance))
+            return std::nullopt;
+    }
+    return value;
 }
 
 std::optional<BodyModel> paperBody(const Measurements& measurements) {
@@ -93,25 +111,28 @@ ExperimentRow run(const Experiment& experiment, const PaperStudyOptions& options
     for (int trial = 0; trial < options.trials && !context.isCancelled(); ++trial) {
         const World world = experiment.makeWorld(static_cast<std::uint64_t>(trial) + 1);
         const Measurements measurements = measurementsOf(world);
-        for (const bool ourTurn : {false, true}) {
-            const auto body = ourTurn ? decidedBody(measurements) : paperBody(measurements);
-            const auto poses = body ? posesOf(*body, experiment.needViews) : std::nullopt;
-            if (poses)
-                (ourTurn ? ours : paper).add(experiment.read(world, poses->T_r_v, poses->T_r_u), experiment.truth);
+        const Read read = [&](const Poses& T_r_v, const Poses& T_r_u) { return experiment.read(world, T_r_v, T_r_u); };
+        double tolerance = 0;
+        if (experiment.hasBound) {
+            const auto quantity = [&](const Poses& T_r_v, const Poses& T_r_u) -> Eigen::VectorXd {
+                if (experiment.vector)
+                    return experiment.vector(world, T_r_v, T_r_u);
+                return Eigen::VectorXd::Constant(1, read(T_r_v, T_r_u));
+            };
+            const Poses T_r_v(world.T_r_v.begin(), world.T_r_v.end());
+            const Poses T_r_u(world.T_r_u.begin(), world.T_r_u.end());
+            if (const auto bound = boundOf(world, measurements, experiment.boundOn, quantity)) {
+                const double square = meanSquareOfLength(quantity(T_r_v, T_r_u), *bound);
+                tolerance = std::sqrt(square);
+                boundSquares += square;
+                ++bounds;
+            }
         }
-        if (!experiment.hasBound)
-            continue;
-        const auto quantity = [&](const Poses& T_r_v, const Poses& T_r_u) -> Eigen::VectorXd {
-            if (experiment.vector)
-                return experiment.vector(world, T_r_v, T_r_u);
-            return Eigen::VectorXd::Constant(1, experiment.read(world, T_r_v, T_r_u));
-        };
-        const Poses T_r_v(world.T_r_v.begin(), world.T_r_v.end());
-        const Poses T_r_u(world.T_r_u.begin(), world.T_r_u.end());
-        if (const auto bound = boundOf(world, measurements, experiment.boundOn, quantity)) {
-            boundSquares += meanSquareOfLength(quantity(T_r_v, T_r_u), *bound);
-            ++bounds;
-        }
+        const auto body = paperBody(measurements);
+        if (const auto poses = body ? posesOf(*body, experiment.needViews) : std::nullopt)
+            paper.add(read(poses->T_r_v, poses->T_r_u), experiment.truth);
+        if (const auto value = ourQuantity(measurements, experiment.needViews, read, tolerance))
+            ours.add(*value, experiment.truth);
     }
     row.paper = paper.outcome(experiment.factor);
     row.ours = ours.outcome(experiment.factor);

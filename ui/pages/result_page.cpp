@@ -161,7 +161,10 @@ void ResultPage::refresh() {
                           : quality.trust == Trust::Usable       ? theme.attention
                                                                  : theme.good;
     verdict_->setStyleSheet(QStringLiteral("color: %1").arg((isPlaced ? colour : theme.text).name()));
-    reason_->setText(workbench_.session().isSolving() ? tr("Newer data are being solved …")
+    const bool isStale = workbench_.session().isSolving();
+    figures_->setEnabled(!isStale);
+    reasons_->setEnabled(!isStale);
+    reason_->setText(isStale ? tr("Stale: of before the last change. The newest data are being solved …")
                      : isPlaced
                          ? tr("All figures are of the newest data. Colours and ellipsoids of the 3D view are chosen "
                               "above it.")

@@ -42,6 +42,7 @@ QString Theme::styleSheet() const {
                "QToolTip { border: 1px solid %1; padding: 4px; }"
                "QLabel#pageTitle { font-size: 17pt; font-weight: 600; }"
                "QLabel#pagePurpose, QLabel[muted=\"true\"] { color: %2; }"
+               "QLabel[attention=\"true\"] { color: %8; }"
                "QLabel#instruction { font-size: 12pt; font-weight: 600; }"
                "QFrame#card { background: %3; border: 1px solid %1; border-radius: 6px; }"
                "QTableView, QListView, QPlainTextEdit { background: %3; border: 1px solid %1; border-radius: 4px; "
@@ -64,7 +65,7 @@ QString Theme::styleSheet() const {
         .arg(line.name(), muted.name(), panel.name(), accent.name(),
              isDark ? QStringLiteral("#69717f") : QStringLiteral("#9aa1ad"),
              isDark ? QStringLiteral("#0b1424") : QStringLiteral("#ffffff"),
-             isDark ? QStringLiteral("#2d4468") : QStringLiteral("#d3e2fa"));
+             isDark ? QStringLiteral("#2d4468") : QStringLiteral("#d3e2fa"), attention.name());
 }
 
 QColor patchTint(unsigned patch) {

@@ -2,11 +2,8 @@
 
 #include <QAction>
 #include <QApplication>
-#include <QCheckBox>
 #include <QCloseEvent>
 #include <QComboBox>
-#include <QFileDialog>
-#include <QLabel>
 #include <QListView>
 #include <QLocale>
 #include <QMimeData>
@@ -29,7 +26,9 @@
 #include "ui/pages/views_page.h"
 #include "ui/scene3d/body_view_widget.h"
 #include "ui/widgets/theme.h"
+#include "ui/window/body_panel.h"
 #include "ui/window/demo_stage.h"
+#include "ui/window/file_actions.h"
 #include "ui/window/mesh_stage.h"
 #include "ui/window/step_delegate.h"
 
@@ -54,7 +53,8 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
       demo_(workbench),
       mesh_(workbench),
       steps_(workbench, connection_, scan_),
-      problems_(workbench, connection_, scan_) {
+      problems_(workbench, connection_, scan_),
+      files_(*new FileActions(workbench.session(), *this)) {
     setWindowTitle(tr("SkinCal[*]"));
     setAcceptDrops(true);
     resize(1440, 900);
@@ -80,13 +80,14 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
         statusBar()->clearMessage();
         problems_.setNotice(why, Step::Connect);
     });
+    connect(&files_, &FileActions::said, this, [this](const QString& text) { statusBar()->showMessage(text); });
+    connect(&files_, &FileActions::complained, &problems_, &ProblemModel::setNotice);
     connect(&session, &Session::opened, this, [this](const QString& directory) {
         problems_.clearNotice();
         statusBar()->showMessage(tr("Opened %1").arg(directory));
-        file_ = directory;
         if (kept_ && kept_->directory == directory) {
             // It lies where it may go: it has no file of its own before it is saved.
-            file_.clear();
+            files_.setFile({});
             workbench_.session().setUnsaved();
             problems_.setKept({}, {});
         }
@@ -167,51 +168,6 @@ QWidget* MainWindow::buildSteps() {
     return stepList_;
 }
 
-QWidget* MainWindow::buildBody() {
-    auto* panel = new QWidget;
-    auto* column = new QVBoxLayout(panel);
-    column->setContentsMargins(0, 0, 0, 0);
-    column->setSpacing(0);
-    auto* bar = new QHBoxLayout;
-    bar->setContentsMargins(10, 6, 10, 6);
-    colours_ = new QComboBox;
-    colours_->setObjectName(QStringLiteral("colours"));
-    colours_->setAccessibleName(tr("Colours of the body"));
-    colours_->setToolTip(tr("What the colours of the modules tell"));
-    const std::vector<std::pair<QString, ColourMode>> modes{{tr("Patch"), ColourMode::Patch},
-                                                            {tr("Uncertainty"), ColourMode::Uncertainty},
-                                                            {tr("Residual"), ColourMode::Residual},
-                                                            {tr("Number of views"), ColourMode::ViewCount},
-                                                            {tr("Last view"), ColourMode::LastView}};
-    for (const auto& [name, mode] : modes)
-        colours_->addItem(name, static_cast<int>(mode));
-    auto* ellipsoids = new QCheckBox(tr("Ellipsoids"));
-    ellipsoids->setToolTip(tr("Where each module is with three standard deviations, enlarged as the legend says"));
-    auto* measure = new QPushButton(tr("Measure"));
-    measure->setCheckable(true);
-    measure->setToolTip(tr("Click two modules to see how far their LEDs are apart"));
-    auto* fit = new QPushButton(tr("Fit"));
-    fit->setToolTip(tr("Show the whole body (F)"));
-    bar->addWidget(colours_);
-    bar->addWidget(ellipsoids);
-    bar->addStretch();
-    bar->addWidget(measure);
-    bar->addWidget(fit);
-    column->addLayout(bar);
-    body_ = new BodyViewWidget;
-    column->addWidget(body_, 1);
-    connect(colours_, &QComboBox::currentIndexChanged, this,
-            [this] { body_->setColourMode(static_cast<ColourMode>(colours_->currentData().toInt())); });
-    connect(ellipsoids, &QCheckBox::toggled, body_, &BodyViewWidget::setEllipsoidsShown);
-    connect(measure, &QPushButton::toggled, body_, &BodyViewWidget::setMeasuring);
-    connect(fit, &QPushButton::clicked, body_, &BodyViewWidget::fitView);
-    connect(body_, &BodyViewWidget::moduleClicked, this, [this](ModuleId module) {
-        showModules({module});
-        connection_.blink(module);
-    });
-    return panel;
-}
-
 QWidget* MainWindow::buildNavigation() {
     auto* bar = new QWidget;
     auto* row = new QHBoxLayout(bar);
@@ -242,7 +198,16 @@ void MainWindow::buildFrame() {
     auto* across = new QSplitter(Qt::Horizontal);
     across->addWidget(buildSteps());
     across->addWidget(centre);
-    across->addWidget(buildBody());
+    auto* panel = new BodyPanel;
+    body_ = &panel->view();
+    colours_ = &panel->colours();
+    connect(&workbench_.session(), &Session::solvingChanged, panel,
+            [this, panel](bool solving) { panel->setStale(solving && workbench_.session().solution() != nullptr); });
+    connect(body_, &BodyViewWidget::moduleClicked, this, [this](ModuleId module) {
+        showModules({module});
+        connection_.blink(module);
+    });
+    across->addWidget(panel);
     across->setStretchFactor(0, 0);
     across->setStretchFactor(1, 5);
     across->setStretchFactor(2, 4);
@@ -280,22 +245,7 @@ void MainWindow::buildToolBar() {
     QToolBar* bar = addToolBar(tr("Tools"));
     bar->setMovable(false);
     bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
-    auto* open = bar->addAction(tr("Open …"));
-    open->setShortcut(QKeySequence::Open);
-    open->setToolTip(tr("Open a recording (a .skinrec folder); one can also be dropped on the window"));
-    connect(open, &QAction::triggered, this, [this] {
-        const QString directory = QFileDialog::getExistingDirectory(this, tr("Open a recording"));
-        if (!directory.isEmpty())
-            openRecording(directory);
-    });
-    auto* save = bar->addAction(tr("Save"));
-    save->setShortcut(QKeySequence::Save);
-    save->setToolTip(tr("Save what was measured and decided as a recording (a .skinrec folder)"));
-    connect(save, &QAction::triggered, this, [this] { this->save(false); });
-    auto* saveAs = bar->addAction(tr("Save as …"));
-    saveAs->setShortcut(QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_S));
-    saveAs->setToolTip(tr("Save in another place, and go on there"));
-    connect(saveAs, &QAction::triggered, this, [this] { this->save(true); });
+    files_.addTo(*bar);
     bar->addSeparator();
     QUndoStack& undo = workbench_.session().undoStack();
     auto* undoAction = undo.createUndoAction(this, tr("Undo"));
@@ -333,8 +283,7 @@ void MainWindow::setDark(bool dark) {
 }
 
 void MainWindow::openRecording(const QString& directory) {
-    statusBar()->showMessage(tr("Reading %1 …").arg(directory));
-    workbench_.session().open(directory);
+    files_.open(directory);
 }
 
 void MainWindow::offerKept(const SessionKeeper& keeper) {
@@ -345,23 +294,6 @@ void MainWindow::offerKept(const SessionKeeper& keeper) {
         return;
     kept_ = sessions.front();
     problems_.setKept(kept_->directory, QLocale().toString(kept_->time, QLocale::ShortFormat));
-}
-
-void MainWindow::save(bool elsewhere) {
-    Session& session = workbench_.session();
-    if (!session.decisions().camera) {
-        problems_.setNotice(tr("A recording needs the camera's intrinsics: give them before saving."), Step::Camera);
-        return;
-    }
-    if (file_.isEmpty() || elsewhere) {
-        QString chosen = QFileDialog::getSaveFileName(this, tr("Save as a recording"), QStringLiteral("skin.skinrec"));
-        if (chosen.isEmpty())
-            return;
-        if (!chosen.endsWith(QStringLiteral(".skinrec")))
-            chosen += QStringLiteral(".skinrec");
-        file_ = chosen;
-    }
-    session.save(file_);
 }
 
 void MainWindow::showBody() {

@@ -23,6 +23,7 @@ class QStackedWidget;
 namespace skincal {
 
 class BodyViewWidget;
+class FileActions;
 class Page;
 class ResultPage;
 
@@ -42,6 +43,7 @@ class MainWindow : public QMainWindow {
     /// Offers what an earlier run left unsaved, the newest of it.
     void offerKept(const SessionKeeper& keeper);
 
+    [[nodiscard]] FileActions& files() { return files_; }
     [[nodiscard]] BodyViewWidget& bodyView() { return *body_; }
     [[nodiscard]] StepModel& steps() { return steps_; }
     [[nodiscard]] ProblemModel& problems() { return problems_; }
@@ -56,12 +58,10 @@ class MainWindow : public QMainWindow {
     void buildToolBar();
     void buildFrame();
     [[nodiscard]] QWidget* buildSteps();
-    [[nodiscard]] QWidget* buildBody();
     [[nodiscard]] QWidget* buildNavigation();
     void showBody();
     void refresh();
     void jumpTo(int problem);
-    void save(bool elsewhere);
     void showModules(const std::vector<ModuleId>& modules);
     void openMesh(const QString& file);
 
@@ -76,6 +76,7 @@ class MainWindow : public QMainWindow {
     MeshPresenter mesh_;
     StepModel steps_;
     ProblemModel problems_;
+    FileActions& files_;
 
     QListView* stepList_ = nullptr;
     QStackedWidget* stack_ = nullptr;
@@ -88,7 +89,6 @@ class MainWindow : public QMainWindow {
     QPushButton* next_ = nullptr;
     QProgressBar* busy_ = nullptr;
     QAction* dark_ = nullptr;
-    QString file_;
     std::optional<KeptSession> kept_;  ///< that was offered
 };
 

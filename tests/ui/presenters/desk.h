@@ -10,7 +10,7 @@
 #include "ui/presenters/problem_model.h"
 #include "ui/presenters/scan_presenter.h"
 #include "ui/presenters/step_model.h"
-#include "ui/presenters/views_presenter.h"
+#include "ui/presenters/view_preview.h"
 
 namespace skincal::test {
 
@@ -95,6 +95,7 @@ class Desk {
     PosePresenter pose{workbench};
     ScanPresenter scan{workbench};
     ViewsPresenter views{workbench};
+    ViewPreview preview{workbench, scan, views};
     ExportPresenter exporter{workbench};
     StepModel steps{workbench, connection, scan};
     ProblemModel problems{workbench, connection, scan};

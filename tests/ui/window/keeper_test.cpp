@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <QListView>
+#include <QMenu>
 #include <QTemporaryDir>
+#include <QToolButton>
 
 #include "core/session/session_keeper.h"
 #include "tests/ui/window/driven_window.h"
+#include "ui/window/file_actions.h"
 
 namespace skincal {
 namespace {
@@ -69,11 +72,42 @@ TEST(Keeper, WhatWasSavedIsNotKept) {
     const QString directory = target.filePath("mine.skinrec");
     driven.session().save(directory);
     ASSERT_TRUE(driven.waitFor([&] { return !driven.session().isModified(); }));
-    EXPECT_FALSE(QDir(keeper.directory()).exists());
+    EXPECT_TRUE(driven.waitFor([&] { return !QDir(keeper.directory()).exists(); }));
     const auto recording = readRecording(directory.toStdString());
     ASSERT_TRUE(recording) << recording.error().message();
     EXPECT_EQ(recording->views.size(), 1U);
     EXPECT_FALSE(recording->views.front().frames.empty());
+}
+
+TEST(RecentFiles, AreListedNewestFirstAndSurviveTheProgram) {
+    const QTemporaryDir folder;
+    const QString ini = folder.filePath("window.ini");
+    const QString one = QStringLiteral(SKINCAL_TEST_DATA "/recordings/flat-detections.skinrec");
+    const QString two = folder.filePath("two.skinrec");
+    {
+        DrivenWindow driven;
+        driven.window.files().keepRecentIn(ini);
+        EXPECT_TRUE(driven.window.files().recent().isEmpty());
+        driven.window.openRecording(one);
+        ASSERT_TRUE(driven.waitFor([&] { return driven.window.files().recent().size() == 1; }));
+        driven.session().save(two);
+        ASSERT_TRUE(driven.waitFor([&] { return driven.window.files().recent().size() == 2; }));
+        driven.window.openRecording(folder.filePath("missing.skinrec"));
+        ASSERT_TRUE(driven.waitFor([&] { return driven.window.problems().rowCount() > 0; }));
+        EXPECT_EQ(driven.window.files().recent().size(), 2) << "what can't be read is none";
+    }
+    DrivenWindow later;
+    later.window.files().keepRecentIn(ini);
+    const QString first = QFileInfo(one).absoluteFilePath();
+    EXPECT_EQ(later.window.files().recent(), QStringList({two, first}));
+    QMenu* menu = later.find<QToolButton>("recent")->menu();
+    emit menu->aboutToShow();
+    ASSERT_EQ(menu->actions().size(), 2);
+    menu->actions().back()->trigger();
+    ASSERT_TRUE(later.waitFor([&] { return later.session().measured().skin.modules.size() > 0; }));
+    EXPECT_EQ(later.window.files().recent(), QStringList({first, two})) << "the newest first";
+    ASSERT_TRUE(QDir(two).removeRecursively());
+    EXPECT_EQ(later.window.files().recent(), QStringList({first}));
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ TEST_F(Result, WithoutPicturesTheBodyIsDrawnOnABlankFrameThatSaysSo) {
             outlines[shape.module] = shape.outline;
         for (const PictureMark& mark : picture->marks()) {
             if (!mark.isCrossed) {
-                EXPECT_TRUE(outlines.at(mark.module).containsPoint(mark.pixel, Qt::OddEvenFill));
+                EXPECT_TRUE(outlines.at(*mark.module).containsPoint(mark.pixel, Qt::OddEvenFill));
             }
         }
     }
@@ -187,7 +187,7 @@ TEST_F(Result, WithoutPicturesTheBodyIsDrawnOnABlankFrameThatSaysSo) {
     // Click on the middle of one: it is shown in 3D, too.
     const PictureMark& mark = picture->marks().front();
     QTest::mouseClick(picture, Qt::LeftButton, {}, picture->toWidget(mark.pixel).toPoint());
-    EXPECT_EQ(driven_.window.bodyView().selected(), std::vector{mark.module});
+    EXPECT_EQ(driven_.window.bodyView().selected(), std::vector{*mark.module});
 }
 
 TEST(ResultOfTheDemo, ShowsTheBodyOnItsPicturesAndAgainstTheSimulatedBody) {

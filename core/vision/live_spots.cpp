@@ -49,6 +49,13 @@ void LiveSpots::find(const FramePixels& dark, const FramePixels& light) {
         if (spot.on > spot.off)
             spots_.push_back(std::move(spot));
     }
+    // Light that falls beside an LED blinks with it, too, and so does noise now and then: a small part of what LEDs do.
+    constexpr double kLeast = 0.08;
+    const auto contrast = [](const Spot& spot) { return spot.on - spot.off; };
+    double strongest = 0;
+    for (const Spot& spot : spots_)
+        strongest = std::max(strongest, contrast(spot));
+    std::erase_if(spots_, [&](const Spot& spot) { return contrast(spot) < kLeast * strongest; });
 }
 
 std::vector<LiveSpot> LiveSpots::spots() const {

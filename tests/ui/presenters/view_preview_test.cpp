@@ -49,7 +49,7 @@ TEST_F(Preview, CountsTheSpotsOfEachPatchWhereTheyAre) {
             if (const auto pixel = visiblePixel(world, desk_.rig.cameraPose(), 0, index.at(module), any))
                 nearest = std::min(nearest, (*pixel - spot.pixel).norm());
         }
-        EXPECT_LT(nearest, 2.0) << "of patch " << patches[spot.patch].id.value;
+        EXPECT_LT(nearest, 2.0) << "of patch " << patches[spot.patch].id.value << " at " << spot.pixel.transpose();
         ++seen;
     }
     EXPECT_GT(seen, 5U);

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -17,6 +18,7 @@ constexpr double kDecisive = 14;
 constexpr double kSettled = 150;
 /// By how much pixels count less (as standard deviations) while a view is on its way to another place.
 constexpr double kLoose = 30;
+constexpr double kAll = std::numeric_limits<double>::infinity();
 /// Nearer places are one: adjusting has led back to where the view stands.
 constexpr double kSamePlace_rad = 1 * kDegree;
 
@@ -153,13 +155,17 @@ tl::expected<std::optional<Weighed>, CalibrationError> solveElsewhere(const Weig
     BodySolution other = standing.solution;
     apply(hypothesis, *plane, other);
     // Gravity and links first: pixels would have the shape that has bent to them fall back to where the views stood.
-    AdjustmentOptions loose = other.weights;
-    loose.pixelSigmaFactor *= kLoose;
+    // And what does not fit the one solution may well fit the other.
+    const AdjustmentOptions weights = other.weights;
+    other.weights.pixelSigmaFactor *= kLoose;
+    rejectFarDetections(other, kAll);
     auto begun = adjustBody(usedMeasurements(other), std::move(other.solved), heldByAModule(standing.solution.solved),
-                            loose, context);
+                            other.weights, context);
     if (!begun)
         return unlessCancelled(begun.error());
     other.solved = std::move(begun->state);
+    rejectFarDetections(other, options.rejectionSigmas);
+    other.weights = weights;
     auto result = weigh(std::move(other), options, context);
     if (!result)
         return unlessCancelled(result.error());

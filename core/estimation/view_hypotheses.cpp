@@ -198,9 +198,10 @@ tl::expected<bool, CalibrationError> settleViewsByLikelihood(BodySolution& solut
     bool changed = turnedBy(best->solution, open, solution) > kSamePlace_rad;
     std::set<std::size_t> undecided;
     std::vector<BodyState> rivals;
-    constexpr int kMostRounds = 8;
+    // Every move is to a likelier solution: it comes to an end, and this is for rounding that might go in circles.
+    const std::size_t mostRounds = 4 * (1 + hypothesesOf(best->solution).size());
     bool moved = true;
-    for (int round = 0; moved && round < kMostRounds; ++round) {
+    for (std::size_t round = 0; moved && round < mostRounds; ++round) {
         moved = false;
         undecided.clear();
         rivals.clear();
@@ -211,10 +212,10 @@ tl::expected<bool, CalibrationError> settleViewsByLikelihood(BodySolution& solut
             if (!*other)
                 continue;
             const double more = (*other)->surprise - best->surprise;
-            if (std::abs(more) < kDecisive) {
+            if (std::abs(more) < kDecisive)
                 undecided.insert(hypothesis.views.begin(), hypothesis.views.end());
+            if (more >= 0 && more < kDecisive)
                 rivals.push_back((*other)->solution.solved);
-            }
             if (more >= 0)
                 continue;
             best = *std::move(*other);
@@ -222,6 +223,8 @@ tl::expected<bool, CalibrationError> settleViewsByLikelihood(BodySolution& solut
             break;  // what was tried so far was tried against another solution
         }
     }
+    if (moved)
+        undecided.insert(open.begin(), open.end());
     if (changed)
         solution = std::move(best->solution);
     solution.estimate.undecidedViews.assign(undecided.begin(), undecided.end());

@@ -8,6 +8,7 @@
 #include <QPushButton>
 #include <QShortcut>
 #include <QTableView>
+#include <QTimer>
 
 #include "ui/pages/board_form.h"
 #include "ui/pages/lens_card.h"
@@ -120,7 +121,7 @@ void CalibrationDialog::saveAs(const QString& file, CameraFileKind kind) {
 
 void CalibrationDialog::showLive() {
     // While it looks, the picture that was searched is shown: the corners are where that has them.
-    if (!presenter_.isLooking() || presenter_.sight().picture.empty())
+    if (isVisible() && (!presenter_.isLooking() || presenter_.sight().picture.empty()))
         picture_->setImage(toImage(scan_.picture()));
 }
 
@@ -128,6 +129,13 @@ void CalibrationDialog::tell(const QString& note, bool isBad) {
     note_ = note;
     isNoteBad_ = isBad;
     showSight();
+    // While it looks, what to do with the board matters more.
+    QTimer::singleShot(std::chrono::seconds(4), this, [this, note] {
+        if (note_ != note || !presenter_.isLooking())
+            return;
+        note_.clear();
+        showSight();
+    });
 }
 
 void CalibrationDialog::say(const QString& mark, const QColor& colour, const QString& sentence) {

@@ -15,8 +15,6 @@ namespace skincal {
 namespace {
 
 constexpr int kCrop_px = 84;  // on the screen
-constexpr double kFarOff = 3;  // of a detection's own standard deviations
-
 
 QLabel* cropLabel(const QString& name) {
     auto* label = new QLabel;

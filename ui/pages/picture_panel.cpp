@@ -151,7 +151,6 @@ void PicturePanel::showView() {
         return;
     const std::string name = views_->currentData().toString().toStdString();
     const auto& solution = workbench_.session().solution();
-    const auto& camera = workbench_.session().decisions().camera;
     picture_->setShapes({});
     picture_->setMarks({});
     figures_->clear();
@@ -163,16 +162,15 @@ void PicturePanel::showView() {
     }
     showPicture(name);
     const BodyView* solved = solvedView(solution.get(), name);
-    if (solved == nullptr || !solved->T_body_camera || !camera) {
+    if (solved == nullptr || !solved->T_body_camera) {
         const bool isDropped = workbench_.session().decisions().droppedViews.contains(name);
         figures_->setText(isDropped
                               ? tr("This view is dropped: the body does not know where its camera stood.")
                               : tr("Where this view's camera stood is not known: the body can't be drawn on it."));
-        if (solved != nullptr && !isDropped)
-            summary_->setText(QString::fromStdString(solved->status));
         return;
     }
-    showOverlay(overlayOf(solution->body, *solved, *camera));
+    // The lens that the body was solved with: another may have been given since.
+    showOverlay(overlayOf(solution->body, *solved, solution->measurements->camera));
 }
 
 void PicturePanel::showOverlay(const ModelOverlay& overlay) {

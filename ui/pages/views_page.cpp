@@ -88,7 +88,10 @@ void ViewsPage::refresh() {
 void ViewsPage::showHint() {
     const Theme theme = Theme::current();
     QString text = preview_.words();
-    hint_->setText(text.isEmpty() ? tr("Looking which patches are in the picture …") : text);
+    const QString obstacle = scan_.obstacle();
+    hint_->setText(!text.isEmpty()       ? text
+                   : !obstacle.isEmpty() ? obstacle
+                                         : tr("Looking which patches are in the picture …"));
     const bool isGood = preview_.verdict() == ViewPreview::Verdict::Good;
     QPalette palette = hint_->palette();
     palette.setColor(QPalette::WindowText, text.isEmpty() ? theme.muted : isGood ? theme.good : theme.attention);

@@ -26,8 +26,8 @@ BoardPresenter::BoardPresenter(Workbench& workbench, ScanPresenter& scan, QObjec
     connect(&scan, &ScanPresenter::pictureChanged, this, &BoardPresenter::look);
     connect(&scan, &ScanPresenter::cameraFailed, this, &BoardPresenter::interrupt);
     connect(&workbench, &Workbench::cameraChosen, this, [this] {
-        interrupt(tr("Another camera was chosen."));
         clear();
+        interrupt(tr("Another camera was chosen."));
     });
     connect(&search_, &QFutureWatcherBase::finished, this, &BoardPresenter::searched);
     connect(&calibrationWatcher_, &QFutureWatcherBase::finished, this, &BoardPresenter::calibrated);
@@ -56,7 +56,10 @@ void BoardPresenter::setLens(DistortionModel lens) {
     if (std::exchange(lens_, lens) == lens)
         return;
     calibration_.reset();
+    if (calibrating_)
+        calibrating_->isCancelled = true;
     calibrateSoon();
+    emit calibrationChanged();
 }
 
 void BoardPresenter::start() {

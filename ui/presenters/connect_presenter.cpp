@@ -73,6 +73,7 @@ void ConnectPresenter::disconnectSkin() {
 void ConnectPresenter::blink(ModuleId module) {
     if (!workbench_.isSkinReady() || workbench_.isScanning())
         return;
+    emit workbench_.lightsClaimed();
     blinks_ = module;
     blinkSteps_ = kBlinkSteps;
     blinkStep();

@@ -12,8 +12,6 @@ namespace {
 
 constexpr int kCell_px = 64;
 constexpr double kBefore = 2e-3;  // m: boards of one surface do not hide each other
-/// Beyond so much more than the picture a distortion model says nothing, and may fold points back into it.
-constexpr double kTrusted = 1.4;
 
 struct Board {
     std::size_t at;  ///< in ModelOverlay::modules
@@ -24,11 +22,15 @@ struct Board {
 std::optional<Vector2d> pixelOf(const CameraModel& camera, const Vector3d& p_v) {
     if (!(p_v.z() > 1e-3))
         return std::nullopt;
-    const double x = camera.fx * p_v.x() / p_v.z() + camera.cx;
-    const double y = camera.fy * p_v.y() / p_v.z() + camera.cy;
-    if (std::abs(x / camera.width - 0.5) > 0.5 * kTrusted || std::abs(y / camera.height - 0.5) > 0.5 * kTrusted)
+    const auto pixel = camera.project(p_v);
+    if (!pixel)
         return std::nullopt;
-    return camera.project(p_v);
+    // Far out of the picture a lens polynomial may fold back into it.
+    const Vector2d straight = p_v.head<2>() / p_v.z();
+    constexpr double kSame = 1e-3;
+    if (!((camera.unproject(*pixel) - straight).norm() < kSame * (1 + straight.norm())))
+        return std::nullopt;
+    return pixel;
 }
 
 bool contains(const std::vector<Vector2d>& polygon, const Vector2d& p) {
@@ -42,17 +44,20 @@ bool contains(const std::vector<Vector2d>& polygon, const Vector2d& p) {
     return isInside;
 }
 
-/// Nothing where its LED is not in the picture.
+/// Nothing where its LED is not in the picture and was not found there either. Without an outline where the lens can't
+/// tell where a corner would be.
 std::optional<OverlayModule> projected(const BodyModule& module, const ModuleTemplate& type, const Isometry3d& T_v_u,
-                                       const CameraModel& camera) {
+                                       const CameraModel& camera, bool isFound) {
     const auto led = pixelOf(camera, T_v_u * type.led);
-    if (!led || !camera.contains(*led))
+    if (!led || !(camera.contains(*led) || isFound))
         return std::nullopt;
     OverlayModule result{module.id, module.patch, OverlayModule::Sight::Open, {}, *led};
     for (const Vector2d& corner : type.outline) {
         const auto pixel = pixelOf(camera, T_v_u * Vector3d(corner.x(), corner.y(), 0));
-        if (!pixel)
-            return std::nullopt;
+        if (!pixel) {
+            result.outline.clear();
+            break;
+        }
         result.outline.push_back(*pixel);
     }
     if (T_v_u.linear().col(2).dot(T_v_u.translation()) >= 0)
@@ -133,6 +138,7 @@ ModelOverlay overlayOf(const BodyModel& body, const BodyView& view, const Camera
     std::unordered_map<ModuleId, const BodyObservation*> observations;
     for (const BodyObservation& observation : view.observations)
         observations[observation.module] = &observation;
+    const Eigen::AlignedBox2d picture(Vector2d::Zero(), Vector2d(camera.width, camera.height));
     std::vector<Board> boards;
     std::unordered_map<std::size_t, Vector3d> leds;
     for (const BodyModule& module : body.modules) {
@@ -140,10 +146,12 @@ ModelOverlay overlayOf(const BodyModel& body, const BodyView& view, const Camera
         if (!module.T_body_module || type == types.end())
             continue;
         const Isometry3d T_v_u = view.T_body_camera->inverse() * *module.T_body_module;
-        auto shown = projected(module, *type->second, T_v_u, camera);
+        const auto found = observations.find(module.id);
+        const bool isFound = found != observations.end() && found->second->pixel;
+        auto shown = projected(module, *type->second, T_v_u, camera, isFound);
         if (!shown)
             continue;
-        if (const auto found = observations.find(module.id); found != observations.end() && found->second->pixel) {
+        if (isFound) {
             shown->found = found->second->pixel;
             shown->residual = found->second->residual;
             shown->counts = found->second->verdict == ObservationVerdict::Used;
@@ -151,7 +159,9 @@ ModelOverlay overlayOf(const BodyModel& body, const BodyView& view, const Camera
         Board board{overlay.modules.size(), T_v_u, {}};
         for (const Vector2d& corner : shown->outline)
             board.box.extend(corner);
-        boards.push_back(board);
+        board.box = board.box.intersection(picture);
+        if (!board.box.isEmpty())
+            boards.push_back(board);
         leds[board.at] = T_v_u * type->second->led;
         overlay.modules.push_back(*std::move(shown));
     }

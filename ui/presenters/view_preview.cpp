@@ -43,7 +43,7 @@ QString listed(const std::vector<PatchInSight>& patches, bool isPlaced) {
 }  // namespace
 
 bool PatchInSight::isEnough() const {
-    return seen >= std::min(kEnough, modules);
+    return seen >= kEnough;
 }
 
 ViewPreview::ViewPreview(Workbench& workbench, ScanPresenter& scan, const ViewsPresenter& views, QObject* parent)
@@ -55,6 +55,11 @@ ViewPreview::ViewPreview(Workbench& workbench, ScanPresenter& scan, const ViewsP
             series_.cancel();
         else if (isActive_)
             again_.start(kPause);
+    });
+    connect(&workbench, &Workbench::lightsClaimed, this, [this] {
+        series_.cancel();
+        if (isActive_)
+            again_.start(kPatience);
     });
     connect(&series_, &PictureSeries::kept, this,
             [this](std::size_t frame) { watcher_.add((*series_.pictures())[frame]); });
@@ -96,6 +101,7 @@ void ViewPreview::look() {
     if (!isActive_)
         return;
     if (!solution || workbench_.isScanning() || !scan_.obstacle().isEmpty()) {
+        forget();
         again_.start(kPause);
         return;
     }
@@ -139,7 +145,7 @@ void ViewPreview::judge() {
     for (PatchInSight& patch : patches_) {
         for (const PatchState& state : views_.patches())
             patch.isPlaced = patch.isPlaced || (state.patch == patch.patch && state.isPlaced);
-        isMissing = isMissing || !patch.isPlaced;
+        isMissing = isMissing || (!patch.isPlaced && patch.modules >= kEnough);
     }
     const bool seesPlaced = !listed(patches_, true).isEmpty();
     const bool seesNew = !listed(patches_, false).isEmpty();

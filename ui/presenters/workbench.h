@@ -76,6 +76,8 @@ class Workbench : public QObject {
     void skinChosen();
     void cameraChosen();
     void skinReadyChanged(bool ready);
+    /// Somebody blinks an LED for a moment.
+    void lightsClaimed();
     /// Before a scan's first light and after its last.
     void scanningChanged(bool scanning);
 

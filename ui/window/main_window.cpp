@@ -12,7 +12,6 @@
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
-#include <QStyle>
 #include <QToolBar>
 #include <QVBoxLayout>
 
@@ -25,6 +24,7 @@
 #include "ui/pages/scan_page.h"
 #include "ui/pages/views_page.h"
 #include "ui/scene3d/body_view_widget.h"
+#include "ui/widgets/primary_button.h"
 #include "ui/widgets/theme.h"
 #include "ui/window/body_panel.h"
 #include "ui/window/demo_stage.h"
@@ -325,12 +325,7 @@ void MainWindow::refresh() {
     if (hasNext) {
         next_->setText(tr("%1 ›").arg(nameOf(kSteps.at(row + 1))));
         const StepStatus status = steps_.states().at(row).status;
-        const bool isPrimary = status == StepStatus::Done;
-        if (next_->property("primary").toBool() != isPrimary) {
-            next_->setProperty("primary", isPrimary);
-            next_->style()->unpolish(next_);
-            next_->style()->polish(next_);
-        }
+        setPrimary(next_, status == StepStatus::Done);
     }
 }
 

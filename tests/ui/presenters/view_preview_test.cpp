@@ -99,10 +99,29 @@ TEST_F(Preview, APulledCableEndsItAndItGoesOnOncePluggedIn) {
     ASSERT_TRUE(look());
     desk_.rig.pullSkin();
     ASSERT_TRUE(waitFor([&] { return !desk_.workbench.isSkinReady(); }));
+    ASSERT_TRUE(waitFor([&] { return desk_.preview.verdict() == Verdict::Unknown; })) << "what was seen is of before";
     desk_.rig.plugSkin();
     ASSERT_TRUE(desk_.connectSkin());
     const QSignalSpy changed(&desk_.preview, &ViewPreview::changed);
     EXPECT_TRUE(waitFor([&] { return changed.count() > 0 && desk_.preview.verdict() == Verdict::Good; }));
+}
+
+TEST_F(Preview, WithoutABodyThereIsNothingToSay) {
+    ASSERT_TRUE(look());
+    desk_.session().decide("no camera", [](Decisions& decisions) { decisions.camera.reset(); });
+    EXPECT_TRUE(waitFor([&] { return desk_.preview.verdict() == Verdict::Unknown; }));
+    desk_.session().undoStack().undo();
+    EXPECT_TRUE(waitFor([&] { return desk_.preview.verdict() == Verdict::Good; }));
+}
+
+TEST_F(Preview, MakesWayForABlink) {
+    ASSERT_TRUE(look());
+    const QSignalSpy blinking(&desk_.connection, &ConnectPresenter::blinking);
+    desk_.connection.blink(desk_.rig.world().skin.modules.front().id);
+    ASSERT_TRUE(waitFor([&] { return blinking.count() > 3; }));
+    const QSignalSpy changed(&desk_.preview, &ViewPreview::changed);
+    ASSERT_TRUE(waitFor([&] { return changed.count() > 0; }));
+    EXPECT_EQ(desk_.preview.verdict(), Verdict::Good) << desk_.preview.words().toStdString();
 }
 
 TEST_F(Preview, AScanShowsItsSpotsWhileItRuns) {

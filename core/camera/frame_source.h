@@ -42,6 +42,13 @@ class FrameSource : public QObject {
     [[nodiscard]] virtual std::optional<double> exposure() const = 0;
     virtual void setExposure(double seconds) = 0;
 
+    /// Now, on the clock of CameraFrame::time: a picture of a later time was exposed after this moment, however late it
+    /// comes.
+    [[nodiscard]] virtual std::chrono::microseconds now() const {
+        return std::chrono::duration_cast<std::chrono::microseconds>(
+            std::chrono::steady_clock::now().time_since_epoch());
+    }
+
     /// frameArrived() again and again, or failed().
     virtual void start() = 0;
     /// stopped() follows where it ran.

@@ -69,6 +69,10 @@ void SimulatedCamera::setExposure(double seconds) {
     exposure_ = std::clamp(seconds, kShortest, kLongest);
 }
 
+std::chrono::microseconds SimulatedCamera::now() const {
+    return rig_ ? rig_->now() : FrameSource::now();
+}
+
 void SimulatedCamera::soon(std::function<void()> what) {
     if (rig_)
         rig_->clock().at(rig_->now(), this, std::move(what));

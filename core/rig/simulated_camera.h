@@ -43,6 +43,7 @@ class SimulatedCamera : public FrameSource {
     [[nodiscard]] std::optional<double> exposure() const override;
     /// The nearest within the range; std::logic_error where it is not a number. For pictures from now on.
     void setExposure(double seconds) override;
+    [[nodiscard]] std::chrono::microseconds now() const override;
     void start() override;
     void stop() override;
 

@@ -80,6 +80,20 @@ DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, Q
     columns->addLayout(side);
     connect(accept_, &QPushButton::clicked, this, [this] { presenter_.detections().accept(selected()); });
     connect(reject_, &QPushButton::clicked, this, [this] { presenter_.detections().reject(selected()); });
+    // Sorting anew and other views clear the selection without a word: it goes with the modules.
+    connect(sorted_, &QAbstractItemModel::modelAboutToBeReset, this, [this] { kept_ = selected(); });
+    connect(sorted_, &QAbstractItemModel::modelReset, this, [this] {
+        QItemSelection rows;
+        for (const ModuleId module : std::exchange(kept_, {})) {
+            if (const auto row = presenter_.detections().rowOf(module)) {
+                const QModelIndex index = sorted_->mapFromSource(presenter_.detections().index(*row, 0));
+                rows.select(index, index);
+            }
+        }
+        table_->selectionModel()->select(rows, QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
+        showEvidence();
+        refresh();
+    });
     connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] {
         showEvidence();
         refresh();

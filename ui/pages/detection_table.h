@@ -34,6 +34,7 @@ class DetectionTable : public QWidget {
   private:
     void showEvidence();
 
+    std::vector<ModuleId> kept_;  ///< selected, while the table is filled anew
     Workbench& workbench_;
     ScanPresenter& presenter_;
     QPushButton* accept_;

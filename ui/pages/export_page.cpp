@@ -15,7 +15,7 @@ constexpr int kPreviewLines = 200;
 
 QString suggestedFile(const QString& suffix) {
     const QString documents = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
-    return QDir(documents.isEmpty() ? QDir::homePath() : documents).filePath(QStringLiteral("skin") + suffix);
+    return QDir(QDir(documents).exists() ? documents : QDir::homePath()).filePath(QStringLiteral("skin") + suffix);
 }
 
 }  // namespace

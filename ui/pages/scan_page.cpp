@@ -65,6 +65,7 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     top->addWidget(pause_);
     top->addWidget(progress_, 1);
     top->addStretch();
+    progress_->setObjectName(QStringLiteral("scanProgress"));
     progress_->setAccessibleName(tr("Progress of the scan"));
     body().addLayout(top);
     body().addWidget(status_);
@@ -114,8 +115,16 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
         showMarks();
         refresh();
     });
-    connect(&presenter, &ScanPresenter::stateChanged, this, &ScanPage::refresh);
-    connect(&presenter, &ScanPresenter::spotsChanged, this, &ScanPage::showMarks);
+    connect(&presenter, &ScanPresenter::stateChanged, this, [this] {
+        // Whoever started it, it is what there is to see.
+        if (!std::exchange(wasBusy_, presenter_.isBusy()) && presenter_.isBusy())
+            views_->setCurrentIndex(kLive);
+        refresh();
+    });
+    connect(&presenter, &ScanPresenter::spotsChanged, this, [this] {
+        showMarks();
+        refresh();
+    });
     connect(&presenter, &ScanPresenter::pictureChanged, this, [this] {
         if (isActive_ && views_->currentIndex() <= kLive) {
             showPicture();
@@ -208,15 +217,20 @@ void ScanPage::refresh() {
     } else if (state.phase == Phase::Paused) {
         text = tr("Paused after picture %1 of %2").arg(state.next).arg(state.frames);
     } else if (state.isRunning()) {
+        const auto& spots = presenter_.spots();
+        const auto known = std::count_if(spots.begin(), spots.end(), [](const LiveSpot& spot) { return spot.module; });
         text = tr("Picture %1 of %2").arg(state.next + 1).arg(state.frames);
+        if (!spots.empty())
+            text += tr(", %n spots", nullptr, static_cast<int>(spots.size())) + tr(", %1 of them known").arg(known);
         if (const auto left = presenter_.timeLeft())
             text += tr(", %1 s left").arg(std::chrono::duration<double>(*left).count(), 0, 'f', 0);
-    } else if (state.phase == Phase::Failed)
+    } else if (state.phase == Phase::Failed) {
         text = tr("Broken off: %1").arg(QString::fromStdString(state.why));
-    else
+    } else {
         text = obstacle.isEmpty() ? tr("Ready: %n pictures of this view will be taken.", nullptr,
                                        static_cast<int>(presenter_.picturesOfAScan()))
                                   : obstacle;
+    }
     status_->setText(text);
 
     const bool isView = views_->currentIndex() > kLive;

@@ -41,6 +41,7 @@ class ScanPage : public Page {
     DetectionTable* table_;
     QLabel* summary_;
     bool isActive_ = false;
+    bool wasBusy_ = false;
 };
 
 }  // namespace skincal

@@ -93,9 +93,8 @@ void ViewsPage::showHint() {
                    : !obstacle.isEmpty() ? obstacle
                                          : tr("Looking which patches are in the picture …"));
     const bool isGood = preview_.verdict() == ViewPreview::Verdict::Good;
-    QPalette palette = hint_->palette();
-    palette.setColor(QPalette::WindowText, text.isEmpty() ? theme.muted : isGood ? theme.good : theme.attention);
-    hint_->setPalette(palette);
+    const QColor colour = text.isEmpty() ? theme.muted : isGood ? theme.good : theme.attention;
+    hint_->setStyleSheet(QStringLiteral("color: %1").arg(colour.name()));
     std::vector<PictureMark> marks;
     for (const SpotInSight& spot : preview_.spots())
         marks.push_back(

@@ -76,12 +76,10 @@ void PictureSeries::attachCamera() {
 
 void PictureSeries::attachSkin() {
     connect(workbench_.skin(), &SkinDevice::lightShown, this, [this](std::uint64_t token) {
-        // Only pictures tell their clock's time. The next one may have been exposed just before this moment.
-        const FrameSource* camera = workbench_.camera();
-        const double rate = camera != nullptr ? camera->format().framesPerSecond : 0;
-        const std::chrono::duration<double> frame(rate > 0 ? 1 / rate : 0.1);
-        handle(
-            scan_run::LightShown{token, newest_.time + std::chrono::duration_cast<std::chrono::microseconds>(frame)});
+        // By the camera's clock, not by the newest picture's time: pictures may be on their way for longer than light
+        // takes to settle.
+        if (const FrameSource* camera = workbench_.camera())
+            handle(scan_run::LightShown{token, camera->now()});
     });
 }
 

@@ -17,6 +17,7 @@ QString sentence(const std::string& text) {
 
 /// A camera that stands moves by less than this between two pictures: noise.
 constexpr double kMoved_px = 1.0;
+constexpr std::size_t kFewSpots = 6;  // of fewer, stray ones may be most
 
 QString numbersOf(const std::vector<ModuleId>& modules) {
     QStringList numbers;
@@ -109,8 +110,8 @@ ProblemModel::ProblemModel(Workbench& workbench, const ConnectPresenter& connect
             refresh();
         }
     });
-    connect(&scan, &ScanPresenter::scanned, this, [this](const std::string& view, double moved_px) {
-        moved_[view] = moved_px;
+    connect(&scan, &ScanPresenter::scanned, this, [this](const std::string& view, double moved_px, std::size_t shone) {
+        scans_[view] = {moved_px, shone};
         refresh();
     });
     refresh();
@@ -182,13 +183,26 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
         problems.push_back({Severity::Error, Step::Result, session.failure(), {}, {}});
     for (const WiringFault& fault : wiringFaults(session.measured().skin))
         problems.push_back(problemOf(fault));
-    for (const auto& [view, moved_px] : moved_) {
-        if (moved_px > kMoved_px && session.findView(view) != nullptr &&
-            !session.decisions().droppedViews.contains(view))
+    for (const auto& [view, scan] : scans_) {
+        const ScannedView* scanned = session.findView(view);
+        if (scanned == nullptr || session.decisions().droppedViews.contains(view))
+            continue;
+        const std::size_t found = scanned->decoded.found.size();
+        if (scan.shone >= kFewSpots && 2 * found < scan.shone)
+            problems.push_back({Severity::Warning,
+                                Step::Scan,
+                                tr("%1: %2 spots shone, only %3 could be told apart: scan it again, at rest and not "
+                                   "too bright")
+                                    .arg(view.c_str())
+                                    .arg(scan.shone)
+                                    .arg(found),
+                                {},
+                                view});
+        if (scan.moved_px > kMoved_px)
             problems.push_back({Severity::Warning,
                                 Step::Scan,
                                 tr("The camera moved by %1 px while %2 was scanned: scan it again")
-                                    .arg(moved_px, 0, 'f', 1)
+                                    .arg(scan.moved_px, 0, 'f', 1)
                                     .arg(view.c_str()),
                                 {},
                                 view});

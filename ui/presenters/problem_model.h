@@ -49,7 +49,11 @@ class ProblemModel : public QAbstractListModel {
     std::optional<Problem> notice_;
     std::optional<Problem> kept_;
     QString cameraFailure_;
-    std::map<std::string, double> moved_;  ///< px that the camera moved during a view's scan
+    struct Scan {
+        double moved_px = 0;    ///< the camera, meanwhile
+        std::size_t shone = 0;  ///< spots with the first light
+    };
+    std::map<std::string, Scan> scans_;
 };
 
 }  // namespace skincal

@@ -41,7 +41,7 @@ QString ScanPresenter::obstacle() const {
         return tr("No camera is chosen.");
     if (!workbench_.session().decisions().camera)
         return tr("The camera's intrinsics are not known.");
-    if (newest_.image.empty() || !isPictureNew_)
+    if (isWaitingForPicture())
         return tr("The camera gives no pictures yet.");
     const CameraModel& camera = *workbench_.session().decisions().camera;
     if (newest_.image.cols != camera.width || newest_.image.rows != camera.height)
@@ -54,9 +54,12 @@ QString ScanPresenter::obstacle() const {
 }
 
 void ScanPresenter::start(const std::optional<std::string>& replaced) {
-    if (!obstacle().isEmpty() || isBusy())
+    if (isBusy())
         return;
     replaced_ = replaced;
+    isStartDue_ = isCameraRunning_ && isWaitingForPicture();
+    if (!obstacle().isEmpty())
+        return;
     // Words change from scan to scan: what two modules that look alike confuse in one view they don't in the next.
     LitSets lit = codedScan(modules(), workbench_.session().measured().views.size());
     watcher_.begin(modules(), lit);
@@ -94,6 +97,7 @@ void ScanPresenter::setActive(bool active) {
     if (camera == nullptr || needed == isCameraRunning_)
         return;
     isCameraRunning_ = needed;
+    isStartDue_ = false;
     // Its time would pass for the present.
     isPictureNew_ = false;
     needed ? camera->start() : camera->stop();
@@ -110,7 +114,9 @@ void ScanPresenter::attachCamera() {
         // What comes after the camera was stopped is late.
         const bool isFirst = isCameraRunning_ && !std::exchange(isPictureNew_, true);
         emit pictureChanged();
-        if (isFirst)
+        if (isFirst && std::exchange(isStartDue_, false))
+            start(replaced_);
+        else if (isFirst)
             emit stateChanged();
     });
     connect(camera, &FrameSource::failed, this, [this](const QString& why) {
@@ -157,7 +163,7 @@ void ScanPresenter::decodingFinished() {
     }
     series_.finish();
     showView(name);
-    emit scanned(name, result.moved_px);
+    emit scanned(name, result.moved_px, watcher_.spots().size());
 }
 
 }  // namespace skincal

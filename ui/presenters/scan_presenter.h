@@ -23,7 +23,7 @@ class ScanPresenter : public QObject {
     /// Why a scan can't begin, in a sentence; empty where it can.
     [[nodiscard]] QString obstacle() const;
 
-    /// A new view, or in the place of one that is there.
+    /// A new view, or in the place of one that is there; as soon as the camera, just started, gives pictures.
     void start(const std::optional<std::string>& replaced = std::nullopt);
     void pause() { series_.pause(); }
     void resume() { series_.resume(); }
@@ -58,9 +58,11 @@ class ScanPresenter : public QObject {
     void shownViewChanged();
     void cameraFailed(const QString& why);
     /// A scan has become a view.
-    void scanned(const std::string& view, double moved_px);
+    /// @param shone  spots that shone with the first light: many more of them than modules found say that it went wrong
+    void scanned(const std::string& view, double moved_px, std::size_t shone);
 
   private:
+    [[nodiscard]] bool isWaitingForPicture() const { return newest_.image.empty() || !isPictureNew_; }
     [[nodiscard]] std::vector<ModuleId> modules() const;
     void attachCamera();
     void seriesChanged();
@@ -80,6 +82,7 @@ class ScanPresenter : public QObject {
     std::size_t picturesOfAScan_ = 0;
     bool isActive_ = false;
     bool isCameraRunning_ = false;
+    bool isStartDue_ = false;    ///< once the first picture comes
     bool isPictureNew_ = false;  ///< taken since the camera was started last
     bool neededCamera_ = false;  ///< the series, when it last changed
 };

@@ -31,13 +31,17 @@ LitSets lookAt(const std::vector<ModuleId>& senders) {
     return sets;
 }
 
+/// "patch 3", "patches 1, 2 and 3"; empty where there is none.
 QString listed(const std::vector<PatchInSight>& patches, bool isPlaced) {
     QStringList names;
     for (const PatchInSight& patch : patches) {
         if (patch.isEnough() && patch.isPlaced == isPlaced)
             names << QString::number(patch.patch.value);
     }
-    return names.join(QStringLiteral(", "));
+    if (names.size() < 2)
+        return names.isEmpty() ? QString() : ViewPreview::tr("patch %1").arg(names.front());
+    const QString last = names.takeLast();
+    return ViewPreview::tr("patches %1 and %2").arg(names.join(QStringLiteral(", ")), last);
 }
 
 }  // namespace
@@ -180,17 +184,15 @@ QString ViewPreview::words() const {
         case Verdict::Nothing:
             return tr("From here no patch is well in the picture: go nearer, or look at the side with the LEDs.");
         case Verdict::Unconnected:
-            return tr("From here patch %1 is in the picture, but none that is placed: go on until both are.")
-                .arg(fresh);
+            return tr("Here, in the picture: %1, and none that is placed. Go on until both are.").arg(fresh);
         case Verdict::NothingNew:
-            return tr("From here only patch %1 is in the picture, which is placed: it becomes more exact, but no other "
-                      "is joined.")
+            return tr("Here, in the picture: %1, placed already. That becomes more exact, but nothing is joined.")
                 .arg(placed);
         case Verdict::Good:
             if (fresh.isEmpty())
-                return tr("Good: patch %1 is in the picture.").arg(placed);
-            return placed.isEmpty() ? tr("Good: patch %1 is in the picture.").arg(fresh)
-                                    : tr("Good: patch %1 joins what is placed (%2).").arg(fresh, placed);
+                return tr("Good. In the picture: %1.").arg(placed);
+            return placed.isEmpty() ? tr("Good. In the picture: %1.").arg(fresh)
+                                    : tr("Good. In the picture: %1, to be joined to %2.").arg(fresh, placed);
     }
     return {};
 }

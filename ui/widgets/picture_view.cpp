@@ -4,6 +4,7 @@
 #include <QPainter>
 #include <QWheelEvent>
 #include <algorithm>
+#include <cmath>
 
 #include "ui/widgets/theme.h"
 
@@ -81,6 +82,17 @@ void PictureView::paintShapes(QPainter& painter) const {
     }
 }
 
+bool PictureView::hasRoom(const PictureMark& mark) const {
+    // A number takes so much; where there are more marks than this, it is crowded anyway.
+    constexpr double kName = 30;
+    constexpr std::size_t kMany = 300;
+    const QPointF at = toWidget(mark.pixel);
+    return marks_.size() < kMany && std::none_of(marks_.begin(), marks_.end(), [&](const PictureMark& other) {
+               const QPointF way = toWidget(other.pixel) - at;
+               return &other != &mark && std::hypot(way.x(), way.y()) < kName;
+           });
+}
+
 void PictureView::paintEvent(QPaintEvent*) {
     const Theme theme = Theme::current();
     QPainter painter(this);
@@ -110,7 +122,7 @@ void PictureView::paintEvent(QPaintEvent*) {
         }
         if (mark.expected)
             painter.drawLine(at, toWidget(*mark.expected));
-        if (mark.module && (isSelected || mark.isNamed || zoom_ > 1.5)) {
+        if (mark.module && (isSelected || (mark.isNamed && hasRoom(mark)) || zoom_ > 1.5)) {
             painter.setPen(mark.colour);
             painter.drawText(at + QPointF(radius + 2, -radius + 4), QString::number(mark.module->value));
         }

@@ -16,7 +16,7 @@ struct PictureMark {
     QColor colour;
     std::optional<ModuleId> module{};   ///< what a click on it selects
     bool isCrossed = false;             ///< what does not count
-    bool isNamed = false;               ///< with the module's number beside it, not only where there is room
+    bool isNamed = false;               ///< with the module's number beside it where no other mark is near
     std::optional<QPointF> expected{};  ///< where the body has it; a line leads there
     double radius = 7;                  ///< of its ring, on the screen
 };
@@ -64,6 +64,7 @@ class PictureView : public QWidget {
 
   private:
     [[nodiscard]] QTransform transform() const;
+    [[nodiscard]] bool hasRoom(const PictureMark& mark) const;
     void paintShapes(QPainter& painter) const;
 
     QImage image_;

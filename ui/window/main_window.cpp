@@ -289,8 +289,16 @@ void MainWindow::openRecording(const QString& directory) {
 void MainWindow::offerKept(const SessionKeeper& keeper) {
     connect(&keeper, &SessionKeeper::failed, this,
             [this](const QString& why) { problems_.setNotice(why, Step::Connect); });
+    // What another recording has taken the place of can be had back at once.
+    connect(
+        &workbench_.session(), &Session::opened, &keeper, [this, &keeper] { offerNewest(keeper); },
+        Qt::QueuedConnection);
+    offerNewest(keeper);
+}
+
+void MainWindow::offerNewest(const SessionKeeper& keeper) {
     const auto sessions = keeper.kept();
-    if (sessions.empty())
+    if (sessions.empty() || kept_)
         return;
     kept_ = sessions.front();
     problems_.setKept(kept_->directory, QLocale().toString(kept_->time, QLocale::ShortFormat));

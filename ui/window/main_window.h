@@ -59,6 +59,7 @@ class MainWindow : public QMainWindow {
     void buildFrame();
     [[nodiscard]] QWidget* buildSteps();
     [[nodiscard]] QWidget* buildNavigation();
+    void offerNewest(const SessionKeeper& keeper);
     void showBody();
     void refresh();
     void jumpTo(int problem);

@@ -230,7 +230,7 @@ TEST(ScanPresenter, SaysHowFarTheCameraMoved) {
     when(desk, Phase::Settling, desk.scan.picturesOfAScan() / 2, [&] { desk.rig.knockCamera(8); });
     double moved = -1;
     QObject::connect(&desk.scan, &ScanPresenter::scanned, &desk.scan,
-                     [&](const std::string&, double moved_px) { moved = moved_px; });
+                     [&](const std::string&, double moved_px, std::size_t) { moved = moved_px; });
     desk.scan.start();
     ASSERT_TRUE(waitFor([&] { return !desk.isScanning(); }));
     EXPECT_NEAR(moved, 8, 1);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <QLabel>
 #include <QLineEdit>
+#include <QProgressBar>
 #include <QTemporaryDir>
 #include <iostream>
 
@@ -48,11 +50,21 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     const auto isViewsDone = [&] {
         return driven.steps().states()[static_cast<std::size_t>(Step::Views)].status == StepStatus::Done;
     };
+    const auto* hint = driven.find<QLabel>("hint");
+    auto* progress = driven.find<QProgressBar>("scanProgress");
     for (int view = 1; view < 10 && !isViewsDone(); ++view) {
         ASSERT_TRUE(driven.moveCameraOn());
-        if (view == 1)
+        if (view == 1) {
+            ASSERT_TRUE(driven.waitFor([&] { return hint->text().contains("patch"); })) << "what a scan would find";
             driven.takePicture("5-views");
+        }
+        bool isTaken = view != 1;
+        const auto whileItRuns = QObject::connect(progress, &QProgressBar::valueChanged, progress, [&](int done) {
+            if (!std::exchange(isTaken, isTaken || done > 70) && isTaken)
+                driven.takePicture("9-scanning");
+        });
         ASSERT_TRUE(driven.scanHere()) << "view " << view;
+        QObject::disconnect(whileItRuns);
         ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));
     }
     EXPECT_EQ(driven.patchesPlaced(), patches());

@@ -175,6 +175,19 @@ TEST_F(Opened, UndoingAllAndRedoingAllGivesTheSameBodies) {
     EXPECT_EQ(posesOfBody(), atLast);
 }
 
+TEST(Interrupted, ScanningFromTheViewsPageScans) {
+    DrivenWindow driven;
+    ASSERT_TRUE(driven.connectSkin());
+    ASSERT_TRUE(driven.capturePoses(3));
+    ASSERT_TRUE(driven.useMakersIntrinsics());
+    ASSERT_TRUE(driven.scanHere());
+    ASSERT_TRUE(driven.moveCameraOn());
+    ASSERT_TRUE(driven.waitFor([&] { return driven.find<QPushButton>("scanHere")->isEnabled(); }));
+    ASSERT_TRUE(driven.click("scanHere"));
+    EXPECT_EQ(driven.window.step(), Step::Scan);
+    EXPECT_TRUE(driven.waitFor([&] { return driven.session().measured().views.size() == 2; }));
+}
+
 TEST(Interrupted, CancelAtEveryStepLeavesNothingBehind) {
     DrivenWindow driven;
     ASSERT_TRUE(driven.click("connect"));

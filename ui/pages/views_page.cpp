@@ -31,7 +31,9 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview
     auto* buttons = new QHBoxLayout;
     move_->setObjectName(QStringLiteral("moveCamera"));
     move_->setVisible(presenter.hasHands());
-    move_->setToolTip(tr("The simulated rig carries its camera to the suggested place, shown in the 3D view"));
+    move_->setToolTip(tr(
+        "The simulated rig carries its camera to the suggested place, shown in the 3D view; while patches are missing, "
+        "to the next of its own places"));
     scanHere_->setObjectName(QStringLiteral("scanHere"));
     scanHere_->setProperty("primary", true);
     scanHere_->setToolTip(tr("Take a new view from where the camera stands now"));
@@ -77,6 +79,7 @@ void ViewsPage::setActive(bool active) {
 
 void ViewsPage::refresh() {
     instruction_->setText(presenter_.instruction());
+    move_->setText(presenter_.goesToTarget() ? tr("Move the camera there") : tr("Move the camera on"));
     reason_->setText(presenter_.reason());
     reason_->setVisible(!presenter_.reason().isEmpty());
     graph_->setGraph(presenter_.views(), presenter_.patches());

@@ -94,14 +94,15 @@ QString ViewsPresenter::reason() const {
         .arg(1e3 * view->gain.worstAfter, 0, 'f', 2);
 }
 
+bool ViewsPresenter::goesToTarget() const {
+    return target() && std::all_of(patches_.begin(), patches_.end(), [](const PatchState& p) { return p.isPlaced; });
+}
+
 void ViewsPresenter::moveCamera() {
     if (!workbench_.hands)
         return;
     const auto& solution = workbench_.session().solution();
-    const auto missing =
-        std::any_of(patches_.begin(), patches_.end(), [](const PatchState& patch) { return !patch.isPlaced; });
-    // Forecasts know placed patches only; a person walks round the body to find the others.
-    if (!missing && target() && solution) {
+    if (goesToTarget() && solution) {
         for (const BodyModule& module : solution->body.modules) {
             if (!module.T_body_module)
                 continue;

@@ -38,7 +38,10 @@ class ViewsPresenter : public QObject {
     [[nodiscard]] std::optional<Isometry3d> target() const;
 
     [[nodiscard]] bool hasHands() const { return workbench_.hands.has_value(); }
-    /// The rig's camera goes there; to another of its own places where nothing is forecast.
+    /// Whether moveCamera() goes to the target: forecasts know placed patches only.
+    [[nodiscard]] bool goesToTarget() const;
+    /// The rig's camera goes there, or else on to another of its own places, as a person walks round the body to find
+    /// what is missing.
     void moveCamera();
 
   signals:

@@ -34,8 +34,11 @@ void OverlapGraph::paintEvent(QPaintEvent*) {
     const auto place = [&](std::size_t i, std::size_t count, double y) {
         return QPointF(width() * (static_cast<double>(i) + 1) / (static_cast<double>(count) + 1), y);
     };
-    const double above = 0.27 * height();
-    const double below = 0.72 * height();
+    const double room = width() / (static_cast<double>(std::max(views_.size(), patches_.size())) + 1);
+    const double radius = std::clamp(0.3 * room, 6.0, 17.0);
+    // Names stand above the views and below the patches.
+    const double above = std::max(0.27 * height(), radius + 24);
+    const double below = std::min(0.72 * height(), height() - radius - 40);
     std::map<std::string, QPointF> views;
     for (std::size_t i = 0; i < views_.size(); ++i)
         views[views_[i].name] = place(i, views_.size(), above);
@@ -45,8 +48,6 @@ void OverlapGraph::paintEvent(QPaintEvent*) {
         for (const std::string& view : patches_[k].views)
             painter.drawLine(views[view], place(k, patches_.size(), below));
     }
-    const double room = width() / (static_cast<double>(std::max(views_.size(), patches_.size())) + 1);
-    const double radius = std::clamp(0.3 * room, 6.0, 17.0);
     for (const ViewState& view : views_) {
         const QPointF at = views[view.name];
         painter.setPen(

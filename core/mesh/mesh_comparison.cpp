@@ -33,15 +33,6 @@ std::vector<OrientedPoint> orientedOf(std::span<const PlacedModule> modules) {
     return points;
 }
 
-std::vector<OrientedPoint> thinned(const std::vector<OrientedPoint>& points, std::size_t most) {
-    if (points.size() <= most)
-        return points;
-    std::vector<OrientedPoint> some;
-    for (std::size_t i = 0; i < most; ++i)
-        some.push_back(points[i * points.size() / most]);
-    return some;
-}
-
 double extentOf(std::span<const OrientedPoint> points) {
     Eigen::AlignedBox3d box;
     for (const OrientedPoint& point : points)

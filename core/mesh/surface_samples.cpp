@@ -44,6 +44,14 @@ std::vector<OrientedPoint> drawPoints(const TriangleMesh& mesh, std::size_t coun
 
 }  // namespace
 
+std::vector<OrientedPoint> thinned(std::span<const OrientedPoint> points, std::size_t most) {
+    std::vector<OrientedPoint> some;
+    const std::size_t count = std::min(most, points.size());
+    for (std::size_t i = 0; i < count; ++i)
+        some.push_back(points[i * points.size() / count]);
+    return some;
+}
+
 std::vector<OrientedPoint> sampleSurface(const TriangleMesh& mesh, std::size_t count, Random& random) {
     constexpr std::size_t kDrawsPerPoint = 6;
     const double spacing = 0.7 * std::sqrt(mesh.area() / static_cast<double>(std::max<std::size_t>(1, count)));

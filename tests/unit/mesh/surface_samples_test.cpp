@@ -44,5 +44,22 @@ TEST(SurfaceSamples, BothSidesOfAThinWallHaveTheirOwn) {
     EXPECT_GT(down, 80);
 }
 
+TEST(SurfaceSamples, ThinnedTheyAreEvenlyFewer) {
+    std::vector<OrientedPoint> points(10);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points[i].position.x() = static_cast<double>(i);
+    const auto numbers = [&](std::size_t most) {
+        std::vector<double> result;
+        for (const OrientedPoint& point : thinned(points, most))
+            result.push_back(point.position.x());
+        return result;
+    };
+    EXPECT_EQ(numbers(3), (std::vector<double>{0, 3, 6}));
+    EXPECT_EQ(numbers(0), std::vector<double>());
+    EXPECT_EQ(numbers(10), numbers(99));
+    EXPECT_EQ(numbers(99).size(), 10U);
+    EXPECT_TRUE(thinned({}, 3).empty());
+}
+
 }  // namespace
 }  // namespace skincal

@@ -57,13 +57,15 @@ std::optional<double> enclosedVolume(const TriangleMesh& mesh) {
     // Every edge is walked as often one way as the other.
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> walked;
     double sixfold = 0;
+    // From a place of its own: about a far origin, what is summed is large and of either sign.
+    const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.vertices[i] - mesh.vertices[0]; };
     for (const auto& corners : mesh.triangles) {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t a = corners.at(i);
             const std::uint32_t b = corners.at((i + 1) % 3);
             walked[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
         }
-        sixfold += mesh.vertices[corners[0]].dot(mesh.vertices[corners[1]].cross(mesh.vertices[corners[2]]));
+        sixfold += corner(corners[0]).dot(corner(corners[1]).cross(corner(corners[2])));
     }
     const bool isClosed = std::all_of(walked.begin(), walked.end(), [](const auto& edge) { return edge.second == 0; });
     return isClosed && !walked.empty() ? std::optional(sixfold / 6) : std::nullopt;

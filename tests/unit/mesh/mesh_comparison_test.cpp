@@ -33,6 +33,13 @@ Covered covered(std::uint64_t seed, std::size_t count, double offset, double noi
     return result;
 }
 
+/// The number that comes with a doubt; 0 without it.
+double doubtOf(const MeshComparison& comparison, Kind kind) {
+    const auto found = std::find_if(comparison.doubts.begin(), comparison.doubts.end(),
+                                    [&](const AlignmentDoubt& doubt) { return doubt.kind == kind; });
+    return found == comparison.doubts.end() ? 0 : found->value;
+}
+
 double errorOf(const MeshComparison& comparison, const Covered& world) {
     double sum = 0;
     for (const PlacedModule& module : world.modules) {
@@ -121,17 +128,51 @@ TEST(MeshComparison, OnAPlaneTheOffsetIsNotKnown) {
     EXPECT_TRUE(hasDoubt(*comparison, Kind::Slides));
 }
 
-TEST(MeshComparison, AMeshOfSomethingElseFitsBadly) {
+TEST(MeshComparison, AMeshOfSomethingElseFitsBadlyOrNotAtAll) {
     const Covered world = covered(1, 60, 0, 0.1e-3);
-    const TriangleMesh other = tubeMesh(Vector3d(0, 0, -0.2), Vector3d(0, 0, 0.2), 0.03, 60);
-    const auto comparison = compareWithMesh(world.modules, other);
-    EXPECT_TRUE(!comparison || hasDoubt(*comparison, Kind::FitsBadly));
+    const auto onTube = [&](double radius) {
+        return compareWithMesh(world.modules, tubeMesh(Vector3d(0, 0, -0.2), Vector3d(0, 0, 0.2), radius, 60));
+    };
+    const auto alike = onTube(0.07);
+    ASSERT_TRUE(alike) << alike.error().message();
+    EXPECT_GT(doubtOf(*alike, Kind::FitsBadly), 5e-3);
+    const auto other = onTube(0.03);
+    ASSERT_FALSE(other);
+    EXPECT_EQ(other.error().code, ErrorCode::NoConsensus);
 }
 
 TEST(MeshComparison, AFewModulesOnALargeBodySaySo) {
     const Covered world = covered(1, 8, 0, 0.1e-3);
     const auto comparison = compareWithMesh(world.modules, scaled(world.mesh, 6));
-    EXPECT_TRUE(!comparison || hasDoubt(*comparison, Kind::FewCovered));
+    ASSERT_TRUE(comparison) << comparison.error().message();
+    EXPECT_TRUE(hasDoubt(*comparison, Kind::FewCovered));
+}
+
+TEST(MeshComparison, AModuleOffTheMeshIsUnmatched) {
+    Covered world = covered(4, 60, 1e-3, 0.1e-3);
+    EXPECT_FALSE(hasDoubt(compareWithMesh(world.modules, world.mesh).value(), Kind::Unmatched));
+    PlacedModule& stray = world.modules[17];
+    stray.T_body_module.translation() += 0.1 * stray.T_body_module.linear().col(2);
+    const auto comparison = compareWithMesh(world.modules, world.mesh);
+    ASSERT_TRUE(comparison) << comparison.error().message();
+    EXPECT_EQ(comparison->unmatched, std::vector{stray.id});
+    EXPECT_EQ(comparison->modules.size(), world.modules.size() - 1);
+    EXPECT_EQ(doubtOf(*comparison, Kind::Unmatched), 1);
+    EXPECT_LT(errorOf(*comparison, world), 1.2e-3) << "the others lie as they did";
+}
+
+TEST(MeshComparison, AMeshOfAnotherSizeIsDoubted) {
+    // Flat, so that modules lie on it however large it is.
+    Random random(6, "size");
+    const TriangleMesh plate{{{-0.2, -0.1, 0}, {0.2, -0.1, 0}, {0.2, 0.1, 0}, {-0.2, 0.1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    const auto modules = test::modulesOn(plate, 30, 0, random);
+    const auto same = compareWithMesh(modules, plate);
+    ASSERT_TRUE(same) << same.error().message();
+    EXPECT_FALSE(hasDoubt(*same, Kind::SizesDiffer));
+    const auto large = compareWithMesh(modules, scaled(plate, 60));
+    ASSERT_TRUE(large) << large.error().message();
+    EXPECT_GT(doubtOf(*large, Kind::SizesDiffer), 60);
+    EXPECT_LT(doubtOf(*large, Kind::SizesDiffer), 75);
 }
 
 TEST(MeshComparison, TellsTheUnitFromTheSizes) {

@@ -124,6 +124,8 @@ std::vector<Isometry3d> alignmentStarts(std::span<const OrientedPoint> modules, 
         return {};
     const double spacing = std::sqrt(mesh.area() / static_cast<double>(fine.size()));
     const std::vector<OrientedPoint> coarse = sampleSurface(mesh, kCoarse, random);
+    if (context.isCancelled())
+        return {};
     const SampledSurface surface(fine);
     const std::vector<OrientedPoint> scored = thinned(modules, kScored);
     double extent = 0;
@@ -132,6 +134,8 @@ std::vector<Isometry3d> alignmentStarts(std::span<const OrientedPoint> modules, 
 
     std::vector<Isometry3d> poses =
         posesFromPairs(modules, coarse, std::max(extent / 25, std::sqrt(mesh.area() / kCoarse) / 2), random);
+    if (context.isCancelled())
+        return {};
     const Isometry3d bodyAxes = principalFrame(modules);
     const Isometry3d meshAxes = principalFrame(fine);
     for (const Vector3d& sign : {Vector3d(1, 1, 1), Vector3d(1, -1, -1), Vector3d(-1, 1, -1), Vector3d(-1, -1, 1)})

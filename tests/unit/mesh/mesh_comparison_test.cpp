@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
+#include "core/mesh/mesh_surface.h"
 #include "tests/unit/mesh/sample_meshes.h"
 
 namespace skincal {
@@ -197,15 +199,83 @@ TEST(MeshComparison, RefusesWhatCanNotBeCompared) {
     EXPECT_EQ(codeOf(compareWithMesh(all, world.mesh, {}, cancelled)), ErrorCode::Cancelled);
 }
 
-TEST(MeshComparison, CancelledHalfWayItStops) {
-    const Covered world = covered(1, 40, 0, 0);
-    for (const int after : {0, 1, 5, 20}) {
-        int asked = 0;
-        RunContext context;
-        context.isCancelled = [&] { return ++asked > after; };
-        const auto result = compareWithMesh(world.modules, world.mesh, {}, context);
-        EXPECT_EQ(result ? ErrorCode::NotConverged : result.error().code, ErrorCode::Cancelled) << after;
+/// What becomes of work that is cancelled the n-th time it asks, for n spread over all the times that it would ask:
+/// how often it asked once it had been told to stop.
+std::vector<int> asksAfterCancelling(int steps, const std::function<void(const RunContext&)>& work) {
+    int asked = 0;
+    RunContext context;
+    context.isCancelled = [&] { return ++asked < 0; };
+    work(context);
+    const int total = asked;
+    std::vector<int> more;
+    for (int step = 0; step < steps; ++step) {
+        const int last = step * total / steps;
+        asked = 0;
+        context.isCancelled = [&] { return ++asked > last; };
+        work(context);
+        more.push_back(asked - last);
     }
+    return more;
+}
+
+TEST(MeshComparison, CancelledAnywhereItStops) {
+    const Covered world = covered(1, 40, 0, 0);
+    const auto more = asksAfterCancelling(25, [&](const RunContext& context) {
+        // How often it asks depends on which thread does what.
+        bool isTold = false;
+        RunContext heard;
+        heard.isCancelled = [&] { return isTold = context.isCancelled(); };
+        const auto result = compareWithMesh(world.modules, world.mesh, {}, heard);
+        EXPECT_EQ(result.has_value(), !isTold);
+        if (!result) {
+            EXPECT_EQ(result.error().code, ErrorCode::Cancelled);
+        }
+    });
+    for (const int asks : more)
+        EXPECT_LE(asks, 6);
+}
+
+TEST(MeshComparison, AFineMeshIsPreparedInShortSteps) {
+    // Corners repeated, as files have them; inside out.
+    const TriangleMesh tube = tubeMesh(Vector3d(0, 0, -0.2), Vector3d(0, 0, 0.2), 0.05, 20000);
+    TriangleMesh soup;
+    for (const auto& [a, b, c] : tube.triangles) {
+        const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+        soup.vertices.insert(soup.vertices.end(), {tube.vertices[c], tube.vertices[b], tube.vertices[a]});
+        soup.triangles.push_back({first, first + 1, first + 2});
+    }
+    constexpr int kSteps = 80000 / 4096;
+    int asked = 0;
+    RunContext counting;
+    counting.isCancelled = [&] { return ++asked < 0; };
+    const TriangleMesh joined = welded(soup, counting);
+    EXPECT_EQ(joined.triangles.size(), 80000U);
+    EXPECT_GT(asked, 7 * kSteps) << "corners sorted and joined, triangles";
+    asked = 0;
+    const TriangleMesh mesh = turnedOutwards(joined, counting);
+    EXPECT_GT(enclosedVolume(mesh).value(), 0);
+    EXPECT_GT(asked, 4 * kSteps) << "edges listed and sorted";
+    asked = 0;
+    const MeshSurface surface(mesh, counting);
+    EXPECT_NEAR(surface.nearest({0.06, 0, 0}, Vector3d::UnitX(), 0.1).value().distance, 0.01, 1e-6);
+    EXPECT_GT(asked, 12 * kSteps) << "faces, corners, edges, boxes, twice the tree";
+
+    for (const int asks : asksAfterCancelling(40, [&](const RunContext& context) { (void)welded(soup, context); }))
+        EXPECT_LE(asks, 1);
+    for (const int asks :
+         asksAfterCancelling(40, [&](const RunContext& context) { (void)turnedOutwards(joined, context); }))
+        EXPECT_LE(asks, 1);
+    bool isWhole = true;
+    for (const int asks : asksAfterCancelling(40, [&](const RunContext& context) {
+             const MeshSurface half(mesh, context);
+             EXPECT_EQ(half.nearest({0.06, 0, 0}, Vector3d::UnitX(), 0.1).has_value(), isWhole);
+             isWhole = false;
+         }))
+        EXPECT_LE(asks, 1);
+    RunContext never;
+    never.isCancelled = [] { return true; };
+    EXPECT_TRUE(welded(soup, never).triangles.empty());
+    EXPECT_EQ(turnedOutwards(joined, never).triangles, joined.triangles);
 }
 
 }  // namespace

@@ -43,6 +43,11 @@ Vector3d BoardPlan::corner(int id) const {
     return {(id % (columns - 1) + 1) * square, (id / (columns - 1) + 1) * square, 0};
 }
 
+bool isSameBoard(const BoardPlan& a, const BoardPlan& b) {
+    return a.kind == b.kind && a.columns == b.columns && a.rows == b.rows && a.square == b.square &&
+           (a.kind == BoardKind::Chessboard || (a.marker == b.marker && a.dictionary == b.dictionary));
+}
+
 std::vector<BoardCell> blackCells(const BoardPlan& plan) {
     if (!plan.validate())
         throw std::logic_error("BoardPlan out of range");

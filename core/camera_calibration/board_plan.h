@@ -66,6 +66,9 @@ struct BoardPlan {
     [[nodiscard]] Vector3d corner(int id) const;
 };
 
+/// Whether both plans print as the same board: what a chessboard's plan says of markers makes no difference.
+[[nodiscard]] bool isSameBoard(const BoardPlan& a, const BoardPlan& b);
+
 /// Everything black on the board, for printing and drawing; whatever isn't covered is white. The top-left square is
 /// black, as OpenCV up to 4.6 (and boards made for it) has it. Throws std::logic_error for a plan that isn't valid.
 [[nodiscard]] std::vector<BoardCell> blackCells(const BoardPlan& plan);

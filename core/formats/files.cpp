@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -17,7 +18,7 @@ namespace skincal {
 
 namespace fs = std::filesystem;
 
-tl::expected<std::string, FileError> readFile(const fs::path& file, std::size_t maxBytes) {
+tl::expected<std::string, FileError> readFile(const fs::path& file, std::size_t maxBytes, const RunContext& context) {
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (status.type() == fs::file_type::not_found)
@@ -32,7 +33,13 @@ tl::expected<std::string, FileError> readFile(const fs::path& file, std::size_t 
             FileError{file, "", fmt::format("expected at most {} MB, found {}", maxBytes >> 20U, size >> 20U)});
     std::ifstream stream(file, std::ios::binary);
     std::string bytes(error ? 0 : size, '\0');
-    if (!stream || !stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+    constexpr std::size_t kBlock = std::size_t{1} << 20U;
+    for (std::size_t at = 0; stream && at < bytes.size(); at += kBlock) {
+        if (context.isCancelled())
+            return tl::unexpected(FileError{file, "", "reading was cancelled"});
+        stream.read(bytes.data() + at, static_cast<std::streamsize>(std::min(kBlock, bytes.size() - at)));
+    }
+    if (!stream)
         return tl::unexpected(FileError{file, "", "expected a readable file: " + std::string(std::strerror(errno))});
     return bytes;
 }

@@ -6,11 +6,13 @@
 #include <tl/expected.hpp>
 
 #include "core/formats/file_error.h"
+#include "core/geometry/run_context.h"
 
 namespace skincal {
 
-/// The whole file; refused above `maxBytes`.
-[[nodiscard]] tl::expected<std::string, FileError> readFile(const std::filesystem::path& file, std::size_t maxBytes);
+/// The whole file; refused above `maxBytes`, and where cancelled.
+[[nodiscard]] tl::expected<std::string, FileError> readFile(const std::filesystem::path& file, std::size_t maxBytes,
+                                                            const RunContext& context = {});
 
 /// Where writing to `file` ends up, symbolic links followed. Refuses what is there and is no regular file (a directory,
 /// a device, a pipe), and a place whose directory is missing or may not be written to: ask before a long computation.

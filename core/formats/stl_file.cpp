@@ -9,18 +9,23 @@
 #include <string_view>
 
 #include "core/formats/files.h"
+#include "core/mesh/in_steps.h"
 
 namespace skincal {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "STL is little-endian, and so is what we copy");
 
-constexpr std::size_t kMaxBytes = std::size_t{400} << 20U;
+constexpr std::size_t kMaxBytes = std::size_t{100} << 20U;
 constexpr std::size_t kHeader = 84;  // with the count
 constexpr std::size_t kFacet = 50;
 constexpr double kFarthest = 1e9;
 
 using Result = tl::expected<TriangleMesh, FileError>;
+
+tl::unexpected<FileError> cancelled(const std::filesystem::path& file) {
+    return tl::unexpected(FileError{file, "", "reading was cancelled"});
+}
 
 bool isPlace(const Vector3d& corner) {
     return corner.allFinite() && corner.cwiseAbs().maxCoeff() <= kFarthest;
@@ -32,11 +37,14 @@ std::uint32_t countOf(std::string_view bytes) {
     return count;
 }
 
-Result parseBinary(std::string_view bytes, const std::filesystem::path& file) {
+Result parseBinary(std::string_view bytes, const std::filesystem::path& file, const RunContext& context) {
     TriangleMesh mesh;
     const std::uint32_t count = countOf(bytes);
     mesh.vertices.reserve(std::size_t{3} * count);
+    mesh.triangles.reserve(count);
     for (std::uint32_t t = 0; t < count; ++t) {
+        if (t % kAskEvery == 0 && context.isCancelled())
+            return cancelled(file);
         std::array<float, 12> numbers{};
         std::memcpy(numbers.data(), bytes.data() + kHeader + kFacet * t, sizeof numbers);
         for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -90,7 +98,7 @@ std::optional<double> numberOf(std::string_view word) {
     return error == std::errc() && end == word.data() + word.size() ? std::optional(value) : std::nullopt;
 }
 
-Result parseText(std::string_view text, const std::filesystem::path& file) {
+Result parseText(std::string_view text, const std::filesystem::path& file, const RunContext& context) {
     TriangleMesh mesh;
     Words words(text);
     const auto failed = [&](const std::string& expected, std::string_view found) {
@@ -99,7 +107,10 @@ Result parseText(std::string_view text, const std::filesystem::path& file) {
             found.empty() ? fmt::format("expected {}, the file ends", expected)
                           : fmt::format("expected {}, found '{}'", expected, std::string(found.substr(0, 40)))});
     };
+    std::size_t turns = 0;
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+        if (turns++ % kAskEvery == 0 && context.isCancelled())
+            return cancelled(file);
         if (isWord(word, "solid") || isWord(word, "endsolid")) {
             words.skipLine();  // any name, with spaces
             continue;
@@ -136,7 +147,7 @@ Result parseText(std::string_view text, const std::filesystem::path& file) {
 
 }  // namespace
 
-Result parseStl(const std::string& bytes, const std::filesystem::path& file) {
+Result parseStl(const std::string& bytes, const std::filesystem::path& file, const RunContext& context) {
     const bool hasCount = bytes.size() >= kHeader;
     const bool isBinary = hasCount && bytes.size() == kHeader + kFacet * std::size_t{countOf(bytes)};
     const bool isText = !isBinary && isWord(std::string_view(bytes).substr(0, 5), "solid");
@@ -151,22 +162,24 @@ Result parseStl(const std::string& bytes, const std::filesystem::path& file) {
                                            "found {}",
                                         kHeader, bytes.size())});
     }
-    Result mesh = isBinary ? parseBinary(bytes, file) : parseText(bytes, file);
+    Result mesh = isBinary ? parseBinary(bytes, file, context) : parseText(bytes, file, context);
     if (!mesh)
         return mesh;
     const std::size_t facets = mesh->triangles.size();
-    mesh = turnedOutwards(welded(*mesh));
+    mesh = turnedOutwards(welded(*mesh, context), context);
+    if (context.isCancelled())
+        return cancelled(file);
     if (mesh->triangles.empty())
         return tl::unexpected(
             FileError{file, "", fmt::format("expected a surface, found {} facets, none of which has an area", facets)});
     return mesh;
 }
 
-Result readStl(const std::filesystem::path& file) {
-    const auto bytes = readFile(file, kMaxBytes);
+Result readStl(const std::filesystem::path& file, const RunContext& context) {
+    const auto bytes = readFile(file, kMaxBytes, context);
     if (!bytes)
         return tl::unexpected(bytes.error());
-    return parseStl(*bytes, file);
+    return parseStl(*bytes, file, context);
 }
 
 std::string stlBytes(const TriangleMesh& mesh) {

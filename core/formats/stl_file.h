@@ -14,12 +14,15 @@ namespace skincal {
 /// turnedOutwards); the normals that the file gives are not used.
 ///
 /// A binary file has 80 bytes of anything, a count, and exactly as many facets of 50 bytes; what begins with "solid"
-/// and does not have that size is ASCII. Refused, with what was expected and found: files above 400 MB, files that are
-/// neither, a count that does not fit the size, facets cut short or with other than three corners, coordinates that are
-/// no numbers or beyond 1e9, and surfaces without a triangle that has an area.
-[[nodiscard]] tl::expected<TriangleMesh, FileError> readStl(const std::filesystem::path& file);
+/// and does not have that size is ASCII. Refused, with what was expected and found: files above 100 MB (two
+/// million facets), files that are neither, a count that does not fit the size, facets cut short or with other than
+/// three corners, coordinates that are no numbers or beyond 1e9, and surfaces without a triangle that has an area.
+/// Fails where cancelled, too.
+[[nodiscard]] tl::expected<TriangleMesh, FileError> readStl(const std::filesystem::path& file,
+                                                            const RunContext& context = {});
 [[nodiscard]] tl::expected<TriangleMesh, FileError> parseStl(const std::string& bytes,
-                                                             const std::filesystem::path& file);
+                                                             const std::filesystem::path& file,
+                                                             const RunContext& context = {});
 
 /// The bytes of a binary STL file; coordinates in the mesh's unit, as floats.
 [[nodiscard]] std::string stlBytes(const TriangleMesh& mesh);

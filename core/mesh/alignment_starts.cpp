@@ -43,15 +43,6 @@ std::optional<Isometry3d> frameOf(const OrientedPoint& a, const OrientedPoint& b
     return makeIsometry(R, 0.5 * (a.position + b.position));
 }
 
-/// At most `count`, evenly by number.
-std::vector<OrientedPoint> someOf(std::span<const OrientedPoint> points, std::size_t count) {
-    std::vector<OrientedPoint> some;
-    const std::size_t n = std::min(count, points.size());
-    for (std::size_t i = 0; i < n; ++i)
-        some.push_back(points[i * points.size() / n]);
-    return some;
-}
-
 Isometry3d principalFrame(std::span<const OrientedPoint> points) {
     Vector3d mean = Vector3d::Zero();
     for (const OrientedPoint& point : points)
@@ -133,14 +124,18 @@ std::vector<Isometry3d> alignmentStarts(std::span<const OrientedPoint> modules, 
         return {};
     const double spacing = std::sqrt(mesh.area() / static_cast<double>(fine.size()));
     const std::vector<OrientedPoint> coarse = sampleSurface(mesh, kCoarse, random);
+    if (context.isCancelled())
+        return {};
     const SampledSurface surface(fine);
-    const std::vector<OrientedPoint> scored = someOf(modules, kScored);
+    const std::vector<OrientedPoint> scored = thinned(modules, kScored);
     double extent = 0;
     for (const OrientedPoint& module : scored)
         extent = std::max(extent, 2 * (module.position - scored.front().position).norm());
 
     std::vector<Isometry3d> poses =
         posesFromPairs(modules, coarse, std::max(extent / 25, std::sqrt(mesh.area() / kCoarse) / 2), random);
+    if (context.isCancelled())
+        return {};
     const Isometry3d bodyAxes = principalFrame(modules);
     const Isometry3d meshAxes = principalFrame(fine);
     for (const Vector3d& sign : {Vector3d(1, 1, 1), Vector3d(1, -1, -1), Vector3d(-1, 1, -1), Vector3d(-1, -1, 1)})

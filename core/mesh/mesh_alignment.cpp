@@ -70,11 +70,11 @@ Isometry3d moved(const Isometry3d& T, const Linear& linear, const Vector7d& step
 }  // namespace
 
 MeshAlignment alignToMesh(std::span<const OrientedPoint> modules, const MeshSurface& surface, const Isometry3d& start,
-                          const MeshAlignmentOptions& options) {
+                          const MeshAlignmentOptions& options, const RunContext& context) {
     if (!options.validate())
         throw std::logic_error("alignToMesh: options out of range");
     MeshAlignment result{start, options.offset, 0, 0};
-    for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    for (int iteration = 0; iteration < options.iterations && !context.isCancelled(); ++iteration) {
         const Linear linear = linearise(modules, surface, result.T_mesh_body, result.offset, options.reach);
         result.sigma = sigmaOf(linear.rows);
         result.matched = linear.rows.size();

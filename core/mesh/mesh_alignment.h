@@ -29,9 +29,11 @@ struct MeshAlignment {
 /// over the pose and, where asked for, the offset h; d is MeshSurface::nearest's signed distance, rho is Tukey's
 /// biweight, whose scale shrinks from far to what the residuals show, so that modules that sit elsewhere have no say in
 /// the end. Levenberg-Marquardt; directions that nothing measures stay as they began. A weak pull towards h = 0 (10 mm
-/// cost as much as 0.03 mm in every module) decides where pose and offset can't be told apart, as on a plane.
+/// cost as much as 0.03 mm in every module) decides where pose and offset can't be told apart, as on a plane. Where
+/// cancelled it ends as far as it has come.
 [[nodiscard]] MeshAlignment alignToMesh(std::span<const OrientedPoint> modules, const MeshSurface& surface,
-                                        const Isometry3d& start, const MeshAlignmentOptions& options);
+                                        const Isometry3d& start, const MeshAlignmentOptions& options,
+                                        const RunContext& context = {});
 
 /// How well an alignment is held.
 struct AlignmentStrength {

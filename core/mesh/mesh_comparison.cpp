@@ -1,7 +1,9 @@
 #include "core/mesh/mesh_comparison.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 #include "core/geometry/parallel.h"
 #include "core/geometry/statistics.h"
@@ -33,15 +35,6 @@ std::vector<OrientedPoint> orientedOf(std::span<const PlacedModule> modules) {
     return points;
 }
 
-std::vector<OrientedPoint> thinned(const std::vector<OrientedPoint>& points, std::size_t most) {
-    if (points.size() <= most)
-        return points;
-    std::vector<OrientedPoint> some;
-    for (std::size_t i = 0; i < most; ++i)
-        some.push_back(points[i * points.size() / most]);
-    return some;
-}
-
 double extentOf(std::span<const OrientedPoint> points) {
     Eigen::AlignedBox3d box;
     for (const OrientedPoint& point : points)
@@ -62,18 +55,28 @@ double cappedRms(const std::vector<OrientedPoint>& modules, const MeshSurface& s
     return std::sqrt(sum / static_cast<double>(modules.size()));
 }
 
-/// Refines all of them, sorts by cost and keeps one of those that came together.
+/// Refines all of them, sorts by cost and keeps one of those that came together. Left half done where cancelled.
 void refine(std::vector<Candidate>& candidates, const std::vector<OrientedPoint>& modules, const MeshSurface& surface,
             const MeshAlignmentOptions& options, const RunContext& context) {
+    // Who called asks, for all threads: on a fine mesh one alignment takes a good part of a second.
+    std::atomic<bool> isCancelled = false;
+    RunContext asked;
+    asked.isCancelled = [&, caller = std::this_thread::get_id()] {
+        if (std::this_thread::get_id() == caller && context.isCancelled())
+            isCancelled = true;
+        return isCancelled.load();
+    };
     forEachInParallel(
         candidates.size(), 1,
         [&](std::size_t i) {
             MeshAlignmentOptions own = options;
             own.offset = candidates[i].alignment.offset;
-            candidates[i].alignment = alignToMesh(modules, surface, candidates[i].alignment.T_mesh_body, own);
+            candidates[i].alignment = alignToMesh(modules, surface, candidates[i].alignment.T_mesh_body, own, asked);
             candidates[i].cost = cappedRms(modules, surface, candidates[i].alignment, options.reach, 0.01);
         },
-        [&](std::size_t) { return !context.isCancelled(); });
+        [&](std::size_t) { return !asked.isCancelled(); }, [&] { (void)asked.isCancelled(); });
+    if (isCancelled)
+        return;
     std::sort(candidates.begin(), candidates.end(),
               [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
     const double alike = std::max(3e-3, 0.01 * extentOf(modules));
@@ -134,7 +137,8 @@ double coverOf(const std::vector<OrientedPoint>& modules, const TriangleMesh& me
 }
 
 void doubt(const std::vector<OrientedPoint>& modules, const MeshSurface& surface, double reach,
-           const std::vector<Candidate>& candidates, bool fitsOffset, MeshComparison& result) {
+           const std::vector<Candidate>& candidates, bool fitsOffset, const RunContext& context,
+           MeshComparison& result) {
     using Kind = AlignmentDoubt::Kind;
     const MeshAlignment& best = candidates.front().alignment;
     const double ratio = surface.mesh().diagonal() / extentOf(modules);
@@ -149,6 +153,8 @@ void doubt(const std::vector<OrientedPoint>& modules, const MeshSurface& surface
     const double rms = cappedRms(modules, surface, best, reach, most);
     const double apart = std::max(5e-3, 0.02 * extentOf(modules));
     for (const Candidate& other : candidates) {
+        if (context.isCancelled())
+            return;
         const double motion = motionBetween(modules, best.T_mesh_body, other.alignment.T_mesh_body);
         const double otherRms = cappedRms(modules, surface, other.alignment, reach, most);
         if (motion > apart && otherRms < 1.25 * rms + 0.1e-3) {
@@ -195,7 +201,9 @@ tl::expected<MeshComparison, CalibrationError> compareWithMesh(std::span<const P
     const std::vector<OrientedPoint> coarse = thinned(all, kCoarseModules);
     Random random(options.seed, "mesh");
     context.report("placing on the mesh", 0);
-    const MeshSurface surface(mesh);
+    const MeshSurface surface(mesh, context);
+    if (context.isCancelled())
+        return failed(ErrorCode::Cancelled);
     const auto starts = alignmentStarts(coarse, mesh, kStarts, random, context);
     if (context.isCancelled())
         return failed(ErrorCode::Cancelled);
@@ -226,8 +234,12 @@ tl::expected<MeshComparison, CalibrationError> compareWithMesh(std::span<const P
     result.T_mesh_body = candidates.front().alignment.T_mesh_body;
     result.offset = candidates.front().alignment.offset;
     describe(modules, surface, align.reach, result);
+    if (context.isCancelled())
+        return failed(ErrorCode::Cancelled);
     result.covered = coverOf(all, mesh, result.T_mesh_body, random);
-    doubt(fine, surface, align.reach, candidates, options.fitOffset, result);
+    doubt(fine, surface, align.reach, candidates, options.fitOffset, context, result);
+    if (context.isCancelled())
+        return failed(ErrorCode::Cancelled);
     return result;
 }
 

@@ -4,8 +4,11 @@
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/transform_iterator.hpp>
 #include <cmath>
-#include <unordered_map>
+#include <functional>
+
+#include "core/mesh/in_steps.h"
 
 namespace skincal {
 namespace {
@@ -59,46 +62,105 @@ double angleBetween(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+using Entry = std::pair<Box, std::uint32_t>;
+
+struct Cancelled {};
+
+/// Handed a million boxes, a tree asks for them one by one until it is done, and nobody in between: who hands them out
+/// does.
+struct AskingHand {
+    struct State {
+        const RunContext& context;
+        std::size_t count = 0;
+    };
+    State* state = nullptr;
+
+    const Entry& operator()(const Entry& entry) const {
+        if (state->count++ % kAskEvery == 0 && state->context.isCancelled())
+            throw Cancelled();
+        return entry;
+    }
+};
+
 }  // namespace
 
 struct MeshSurface::Index {
-    bgi::rtree<std::pair<Box, std::uint32_t>, bgi::rstar<16>> tree;
+    bgi::rtree<Entry, bgi::rstar<16>> tree;
 };
 
 MeshSurface::~MeshSurface() = default;
 
-MeshSurface::MeshSurface(TriangleMesh mesh) : mesh_(std::move(mesh)), index_(std::make_unique<Index>()) {
+MeshSurface::MeshSurface(TriangleMesh mesh, const RunContext& context)
+    : mesh_(std::move(mesh)), index_(std::make_unique<Index>()) {
+    if (weighFacesAndCorners(context) && weighEdges(context))
+        plant(context);
+}
+
+bool MeshSurface::weighFacesAndCorners(const RunContext& context) {
     const auto& vertices = mesh_.vertices;
     vertexNormals_.assign(vertices.size(), Vector3d::Zero());
-    std::unordered_map<std::uint64_t, Vector3d> edges;
-    const auto edgeOf = [](std::uint32_t a, std::uint32_t b) {
-        return (static_cast<std::uint64_t>(std::min(a, b)) << 32U) | std::max(a, b);
-    };
-    std::vector<std::pair<Box, std::uint32_t>> boxes;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    faceNormals_.reserve(mesh_.triangles.size());
+    const bool isSummed = forEachInSteps(mesh_.triangles.size(), context, [&](std::size_t t) {
         const auto& corners = mesh_.triangles[t];
         const Vector3d normal = mesh_.crossOf(t).normalized();
         faceNormals_.push_back(normal);
-        Eigen::AlignedBox3d box;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t at = corners.at(i);
             const std::uint32_t next = corners.at((i + 1) % 3);
             const std::uint32_t last = corners.at((i + 2) % 3);
             vertexNormals_[at] += angleBetween(vertices[next] - vertices[at], vertices[last] - vertices[at]) * normal;
-            edges.try_emplace(edgeOf(at, next), Vector3d::Zero()).first->second += normal;
-            box.extend(vertices[at]);
         }
-        boxes.emplace_back(Box(toBoost(box.min()), toBoost(box.max())), static_cast<std::uint32_t>(t));
-    }
-    for (Vector3d& normal : vertexNormals_)
-        normal.normalize();
+    });
+    return isSummed && forEachInSteps(vertices.size(), context, [&](std::size_t i) { vertexNormals_[i].normalize(); });
+}
+
+bool MeshSurface::weighEdges(const RunContext& context) {
+    // Its corners, and whose it is: triangle and which of its edges.
+    using Edge = std::pair<std::uint64_t, std::pair<std::uint32_t, std::uint32_t>>;
+    std::vector<Edge> edges;
+    edges.reserve(3 * mesh_.triangles.size());
+    const bool isListed = forEachInSteps(mesh_.triangles.size(), context, [&](std::size_t t) {
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = mesh_.triangles[t].at(i);
+            const std::uint32_t b = mesh_.triangles[t].at((i + 1) % 3);
+            edges.push_back({(static_cast<std::uint64_t>(std::min(a, b)) << 32U) | std::max(a, b),
+                             {static_cast<std::uint32_t>(t), i}});
+        }
+    });
+    if (!isListed || !sortInSteps(edges, context, std::less<>()))
+        return false;
     edgeNormals_.resize(mesh_.triangles.size());
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-        for (std::size_t i = 0; i < 3; ++i)
-            edgeNormals_[t].at(i) =
-                edges.at(edgeOf(mesh_.triangles[t].at(i), mesh_.triangles[t].at((i + 1) % 3))).normalized();
+    std::size_t first = 0;
+    return forEachInSteps(edges.size(), context, [&](std::size_t last) {
+        if (last + 1 < edges.size() && edges[last + 1].first == edges[last].first)
+            return;
+        Vector3d normal = Vector3d::Zero();
+        for (std::size_t k = first; k <= last; ++k)
+            normal += faceNormals_[edges[k].second.first];
+        normal.normalize();
+        for (; first <= last; ++first)
+            edgeNormals_[edges[first].second.first].at(edges[first].second.second) = normal;
+    });
+}
+
+void MeshSurface::plant(const RunContext& context) {
+    std::vector<Entry> entries;
+    entries.reserve(mesh_.triangles.size());
+    const bool isBoxed = forEachInSteps(mesh_.triangles.size(), context, [&](std::size_t t) {
+        Eigen::AlignedBox3d box;
+        for (const std::uint32_t corner : mesh_.triangles[t])
+            box.extend(mesh_.vertices[corner]);
+        entries.emplace_back(Box(toBoost(box.min()), toBoost(box.max())), static_cast<std::uint32_t>(t));
+    });
+    if (!isBoxed)
+        return;
+    AskingHand::State state{context};
+    const auto handed = [&](auto at) { return boost::make_transform_iterator(at, AskingHand{&state}); };
+    try {
+        index_->tree = decltype(Index::tree)(handed(entries.cbegin()), handed(entries.cend()));
+    } catch (const Cancelled&) {
+        return;  // the tree is as it was: empty
     }
-    index_->tree = decltype(Index::tree)(boxes);
 }
 
 std::optional<SurfacePoint> MeshSurface::nearest(const Vector3d& p, const Vector3d& facing, double reach) const {
@@ -107,11 +169,14 @@ std::optional<SurfacePoint> MeshSurface::nearest(const Vector3d& p, const Vector
     Foot foot{};
     const Point at = toBoost(p);
     const auto faces = bgi::satisfies([&](const auto& entry) { return faceNormals_[entry.second].dot(facing) > 0; });
+    // Where nothing near faces that way, the far side of a fine mesh is half a million triangles away.
+    const Vector3d around = Vector3d::Constant(reach);
+    const auto within = bgi::intersects(Box(toBoost(p - around), toBoost(p + around)));
     // The triangle whose box is nearest need not be the nearest; once a box is farther than what was found, it is.
-    std::vector<std::pair<Box, std::uint32_t>> entries;
+    std::vector<Entry> entries;
     for (unsigned count = 6;; count *= 4) {
         entries.clear();
-        index_->tree.query(bgi::nearest(at, count) && faces, std::back_inserter(entries));
+        index_->tree.query(bgi::nearest(at, count) && within && faces, std::back_inserter(entries));
         double farthest = 0;
         for (const auto& [box, t] : entries) {
             const double away = bg::comparable_distance(at, box);

@@ -20,8 +20,9 @@ struct SurfacePoint {
 /// A mesh that can be asked for its nearest point. Constant after it was made: threads may share it.
 class MeshSurface {
   public:
+    /// Where cancelled, it has no point near to anything.
     /// @param mesh  welded.
-    explicit MeshSurface(TriangleMesh mesh);
+    explicit MeshSurface(TriangleMesh mesh, const RunContext& context = {});
     ~MeshSurface();
     MeshSurface(const MeshSurface&) = delete;
     MeshSurface& operator=(const MeshSurface&) = delete;
@@ -38,6 +39,11 @@ class MeshSurface {
 
   private:
     struct Index;
+
+    /// Both return false where cancelled.
+    bool weighFacesAndCorners(const RunContext& context);
+    bool weighEdges(const RunContext& context);
+    void plant(const RunContext& context);
 
     TriangleMesh mesh_;
     std::vector<Vector3d> faceNormals_;

@@ -44,14 +44,24 @@ std::vector<OrientedPoint> drawPoints(const TriangleMesh& mesh, std::size_t coun
 
 }  // namespace
 
+std::vector<OrientedPoint> thinned(std::span<const OrientedPoint> points, std::size_t most) {
+    std::vector<OrientedPoint> some;
+    const std::size_t count = std::min(most, points.size());
+    for (std::size_t i = 0; i < count; ++i)
+        some.push_back(points[i * points.size() / count]);
+    return some;
+}
+
 std::vector<OrientedPoint> sampleSurface(const TriangleMesh& mesh, std::size_t count, Random& random) {
     constexpr std::size_t kDrawsPerPoint = 6;
     const double spacing = 0.7 * std::sqrt(mesh.area() / static_cast<double>(std::max<std::size_t>(1, count)));
     // A grid of cells of the spacing: what is nearer lies in the same cell or one beside it.
     std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells;
-    const auto keyOf = [](const Eigen::Vector3i& cell) {
+    using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
+    const auto keyOf = [](const Cell& cell) {
+        // Far from the origin keys repeat: what shares one is compared in vain.
         constexpr int kBits = 21;
-        constexpr int kHalf = 1 << (kBits - 1);
+        constexpr std::int64_t kHalf = 1 << (kBits - 1);
         std::uint64_t key = 0;
         for (int i = 0; i < 3; ++i)
             key = (key << kBits) | static_cast<std::uint64_t>((cell[i] + kHalf) & ((1 << kBits) - 1));
@@ -59,10 +69,10 @@ std::vector<OrientedPoint> sampleSurface(const TriangleMesh& mesh, std::size_t c
     };
     std::vector<OrientedPoint> kept;
     for (const OrientedPoint& point : drawPoints(mesh, kDrawsPerPoint * count, random)) {
-        const Eigen::Vector3i cell = (point.position / spacing).array().floor().cast<int>();
+        const Cell cell = (point.position / spacing).array().floor().cast<std::int64_t>();
         bool isFree = true;
         for (int n = 0; isFree && n < 27; ++n) {
-            const auto found = cells.find(keyOf(cell + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)));
+            const auto found = cells.find(keyOf(cell + Cell(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)));
             if (found == cells.end())
                 continue;
             // Two sides of a thin wall are both kept.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/geometry/random.h"
@@ -13,6 +14,9 @@ struct OrientedPoint {
     Vector3d position = Vector3d::Zero();
     Vector3d normal = Vector3d::UnitZ();
 };
+
+/// At most so many of them, evenly by number, in their order.
+[[nodiscard]] std::vector<OrientedPoint> thinned(std::span<const OrientedPoint> points, std::size_t most);
 
 /// Points spread evenly over the area of a mesh: at least `spacing` apart, and hardly farther than that.
 /// @param count  about so many; where the area is 0 there are none.

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
+
+#include "core/mesh/in_steps.h"
 
 namespace skincal {
 
@@ -26,7 +29,7 @@ double TriangleMesh::diagonal() const {
     return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-TriangleMesh welded(const TriangleMesh& mesh) {
+TriangleMesh welded(const TriangleMesh& mesh, const RunContext& context) {
     // Exactly the same place: writers repeat a corner's bytes, and what is merely near may be two sides of a gap.
     const auto before = [&](std::uint32_t i, std::uint32_t k) {
         const Vector3d& a = mesh.vertices[i];
@@ -34,43 +37,50 @@ TriangleMesh welded(const TriangleMesh& mesh) {
         return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
     };
     std::vector<std::uint32_t> order(mesh.vertices.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i)
-        order[i] = i;
-    std::sort(order.begin(), order.end(), before);
+    std::iota(order.begin(), order.end(), 0U);
+    if (!sortInSteps(order, context, before))
+        return {};
     TriangleMesh result;
     std::vector<std::uint32_t> place(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool isJoined = forEachInSteps(order.size(), context, [&](std::size_t k) {
         if (k == 0 || before(order[k - 1], order[k]))
             result.vertices.push_back(mesh.vertices[order[k]]);
         place[order[k]] = static_cast<std::uint32_t>(result.vertices.size() - 1);
-    }
+    });
     const double least = 1e-24 * mesh.diagonal() * mesh.diagonal();
-    for (const auto& [a, b, c] : mesh.triangles) {
-        result.triangles.push_back({place[a], place[b], place[c]});
-        if (!(result.crossOf(result.triangles.size() - 1).norm() > least))
-            result.triangles.pop_back();
-    }
-    return result;
+    const bool isDone = isJoined && forEachInSteps(mesh.triangles.size(), context, [&](std::size_t t) {
+                            const auto& [a, b, c] = mesh.triangles[t];
+                            result.triangles.push_back({place[a], place[b], place[c]});
+                            if (!(result.crossOf(result.triangles.size() - 1).norm() > least))
+                                result.triangles.pop_back();
+                        });
+    return isDone ? std::move(result) : TriangleMesh{};
 }
 
-std::optional<double> enclosedVolume(const TriangleMesh& mesh) {
-    // Every edge is walked as often one way as the other.
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> walked;
+std::optional<double> enclosedVolume(const TriangleMesh& mesh, const RunContext& context) {
+    // Every edge is walked as often one way, from the lower corner to the higher, as the other.
+    std::vector<std::uint64_t> up;
+    std::vector<std::uint64_t> down;
     double sixfold = 0;
-    for (const auto& corners : mesh.triangles) {
+    // From a place of its own: about a far origin, what is summed is large and of either sign.
+    const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.vertices[i] - mesh.vertices[0]; };
+    const bool isWalked = forEachInSteps(mesh.triangles.size(), context, [&](std::size_t t) {
+        const auto& corners = mesh.triangles[t];
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t a = corners.at(i);
             const std::uint32_t b = corners.at((i + 1) % 3);
-            walked[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+            (a < b ? up : down).push_back((static_cast<std::uint64_t>(std::min(a, b)) << 32U) | std::max(a, b));
         }
-        sixfold += mesh.vertices[corners[0]].dot(mesh.vertices[corners[1]].cross(mesh.vertices[corners[2]]));
-    }
-    const bool isClosed = std::all_of(walked.begin(), walked.end(), [](const auto& edge) { return edge.second == 0; });
-    return isClosed && !walked.empty() ? std::optional(sixfold / 6) : std::nullopt;
+        sixfold += corner(corners[0]).dot(corner(corners[1]).cross(corner(corners[2])));
+    });
+    if (!isWalked || up.empty() || up.size() != down.size() || !sortInSteps(up, context, std::less<>()) ||
+        !sortInSteps(down, context, std::less<>()))
+        return std::nullopt;
+    return up == down ? std::optional(sixfold / 6) : std::nullopt;
 }
 
-TriangleMesh turnedOutwards(TriangleMesh mesh) {
-    if (enclosedVolume(mesh).value_or(0) < 0) {
+TriangleMesh turnedOutwards(TriangleMesh mesh, const RunContext& context) {
+    if (enclosedVolume(mesh, context).value_or(0) < 0) {
         for (auto& corners : mesh.triangles)
             std::swap(corners[1], corners[2]);
     }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/geometry/run_context.h"
 #include "core/geometry/se3.h"
 
 namespace skincal {
@@ -24,15 +25,16 @@ struct TriangleMesh {
 };
 
 /// Corners at one place become one vertex, triangles without area go: what formats that repeat corners (STL) need
-/// before neighbours are known.
-[[nodiscard]] TriangleMesh welded(const TriangleMesh& mesh);
+/// before neighbours are known. Empty where cancelled.
+[[nodiscard]] TriangleMesh welded(const TriangleMesh& mesh, const RunContext& context = {});
 
 /// The volume that it encloses, negative where its triangles are inside out; nothing where it has a border, or edges
-/// at which two triangles disagree on where outside is. Of a welded mesh.
-[[nodiscard]] std::optional<double> enclosedVolume(const TriangleMesh& mesh);
+/// at which two triangles disagree on where outside is, and where cancelled. Of a welded mesh.
+[[nodiscard]] std::optional<double> enclosedVolume(const TriangleMesh& mesh, const RunContext& context = {});
 
-/// A closed mesh that is inside out is turned; all others stay as they are. Of a welded mesh.
-[[nodiscard]] TriangleMesh turnedOutwards(TriangleMesh mesh);
+/// A closed mesh that is inside out is turned; all others stay as they are, and so does any where cancelled. Of a
+/// welded mesh.
+[[nodiscard]] TriangleMesh turnedOutwards(TriangleMesh mesh, const RunContext& context = {});
 
 [[nodiscard]] TriangleMesh scaled(TriangleMesh mesh, double factor);
 [[nodiscard]] TriangleMesh transformed(TriangleMesh mesh, const Isometry3d& T);

@@ -28,11 +28,6 @@ std::array<Vector2d, BoardPainter::kSamples> places() {
     return result;
 }
 
-bool isSame(const BoardPlan& a, const BoardPlan& b) {
-    return a.kind == b.kind && a.columns == b.columns && a.rows == b.rows && a.square == b.square &&
-           a.marker == b.marker && a.dictionary == b.dictionary;
-}
-
 /// From rays to pixels of the sheet, up to scale: the board's plane is z_b = 0, so p_b = R (s ray) + t, third row 0.
 Matrix3d sheetFromRay(const BoardPlan& plan, const Isometry3d& T_v_b) {
     const Isometry3d T_b_v = T_v_b.inverse();
@@ -68,7 +63,7 @@ Vector2d BoardPainter::rayAt(int column, int row) const {
 }
 
 void BoardPainter::print(const BoardPlan& plan) {
-    if (!sheet_.empty() && isSame(plan, plan_))
+    if (!sheet_.empty() && isSameBoard(plan, plan_))
         return;
     plan_ = plan;
     const double scale = kSheetPixels / plan.square;

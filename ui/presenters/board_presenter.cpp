@@ -7,11 +7,6 @@
 namespace skincal {
 namespace {
 
-bool isSame(const BoardPlan& a, const BoardPlan& b) {
-    return a.kind == b.kind && a.columns == b.columns && a.rows == b.rows && a.square == b.square &&
-           (a.kind == BoardKind::Chessboard || (a.marker == b.marker && a.dictionary == b.dictionary));
-}
-
 bool isSame(const CameraModel& a, const CameraModel& b) {
     return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
            a.distortionModel == b.distortionModel && a.distortion == b.distortion;
@@ -43,7 +38,7 @@ BoardPresenter::~BoardPresenter() {
 }
 
 void BoardPresenter::setPlan(const BoardPlan& plan) {
-    if (isSame(plan, this->plan()))
+    if (isSameBoard(plan, this->plan()))
         return;
     collector_ = BoardCollector(plan);
     clear();

@@ -2,33 +2,16 @@
 
 #include <QFileInfo>
 #include <QtConcurrent/QtConcurrentRun>
+#include <new>
 
 #include "core/formats/stl_file.h"
 
 namespace skincal {
-namespace {
-
-QString sentenceOf(const CalibrationError& error) {
-    switch (error.code) {
-        case ErrorCode::TooFewPoints:
-            return MeshPresenter::tr("At least %1 placed modules are needed to lay the body on a mesh; there are %2.")
-                .arg(error.numbers.at("needed"))
-                .arg(error.numbers.at("found"));
-        case ErrorCode::NoConsensus:
-            return MeshPresenter::tr(
-                "In no pose do half of the modules lie on this mesh. Is it the mesh of this body, "
-                "in the unit chosen?");
-        case ErrorCode::Cancelled:
-            return {};
-        default:
-            return MeshPresenter::tr("This mesh can't be compared: %1.").arg(QString::fromStdString(error.message()));
-    }
-}
-
-}  // namespace
-
 MeshPresenter::MeshPresenter(Workbench& workbench, QObject* parent)
-    : QObject(parent), workbench_(workbench), cancelled_(std::make_shared<std::atomic<bool>>(false)) {
+    : QObject(parent),
+      workbench_(workbench),
+      cancelled_(std::make_shared<std::atomic<bool>>(false)),
+      forgotten_(std::make_shared<std::atomic<bool>>(false)) {
     pool_.setMaxThreadCount(1);
     connect(&watcher_, &QFutureWatcherBase::finished, this, &MeshPresenter::finish);
     connect(&workbench.session(), &Session::solutionChanged, this, [this] {
@@ -39,6 +22,7 @@ MeshPresenter::MeshPresenter(Workbench& workbench, QObject* parent)
 
 MeshPresenter::~MeshPresenter() {
     *cancelled_ = true;
+    *forgotten_ = true;
     watcher_.disconnect(this);
     pool_.waitForDone();
 }
@@ -68,6 +52,8 @@ void MeshPresenter::useSimulatedBody() {
 
 void MeshPresenter::remove() {
     *cancelled_ = true;
+    *forgotten_ = true;
+    forgotten_ = std::make_shared<std::atomic<bool>>(false);
     ++run_;
     isDue_ = false;
     name_.clear();
@@ -127,43 +113,56 @@ std::vector<PlacedModule> MeshPresenter::placedModules() const {
     return modules;
 }
 
+MeshPresenter::Outcome MeshPresenter::compare(const Request& request) {
+    Outcome outcome{request.run, request.forgotten, request.raw, nullptr, MeshUnit::Metre, nullptr, {}};
+    // What has been read so far would be for nothing: only a mesh that nobody wants any more is read half.
+    RunContext reading;
+    reading.isCancelled = [&] { return request.forgotten->load(); };
+    RunContext comparing;
+    comparing.isCancelled = [&] { return request.cancelled->load(); };
+    try {
+        if (!outcome.raw) {
+            auto mesh = readStl(request.file, reading);
+            if (!mesh) {
+                outcome.complaint =
+                    tr("This mesh can't be read: %1").arg(QString::fromStdString(mesh.error().message()));
+                return outcome;
+            }
+            outcome.raw = std::make_shared<const TriangleMesh>(*std::move(mesh));
+        }
+        if (comparing.isCancelled())
+            return outcome;
+        outcome.unit = request.unit.value_or(likelyUnit(request.modules, *outcome.raw));
+        outcome.mesh = std::make_shared<const TriangleMesh>(scaled(*outcome.raw, metres(outcome.unit)));
+        MeshComparisonOptions options;
+        options.fitOffset = request.isOffsetFitted;
+        auto comparison = compareWithMesh(request.modules, *outcome.mesh, options, comparing);
+        if (comparison)
+            outcome.comparison = std::make_shared<const MeshComparison>(*std::move(comparison));
+        else
+            outcome.complaint = sentenceOf(comparison.error());
+    } catch (const std::bad_alloc&) {
+        outcome.mesh.reset();
+        outcome.complaint = tr("There is not enough memory for this mesh; one with fewer triangles will do.");
+    }
+    return outcome;
+}
+
 void MeshPresenter::start() {
     // One after the other: finish() begins the next.
     if (isBusy())
         return;
     isDue_ = false;
     cancelled_ = std::make_shared<std::atomic<bool>>(false);
-    const auto work = [run = run_, raw = raw_, file = file_, modules = placedModules(), unit = unit_,
-                       fitted = isOffsetFitted_, cancelled = cancelled_] {
-        Outcome outcome{run, raw, nullptr, MeshUnit::Metre, nullptr, {}};
-        if (!outcome.raw) {
-            auto mesh = readStl(file);
-            if (!mesh) {
-                outcome.complaint = QString::fromStdString(mesh.error().message());
-                return outcome;
-            }
-            outcome.raw = std::make_shared<const TriangleMesh>(*std::move(mesh));
-        }
-        outcome.unit = unit.value_or(likelyUnit(modules, *outcome.raw));
-        outcome.mesh = std::make_shared<const TriangleMesh>(scaled(*outcome.raw, metres(outcome.unit)));
-        RunContext context;
-        context.isCancelled = [cancelled] { return cancelled->load(); };
-        MeshComparisonOptions options;
-        options.fitOffset = fitted;
-        auto comparison = compareWithMesh(modules, *outcome.mesh, options, context);
-        if (comparison)
-            outcome.comparison = std::make_shared<const MeshComparison>(*std::move(comparison));
-        else
-            outcome.complaint = skincal::sentenceOf(comparison.error());
-        return outcome;
-    };
-    watcher_.setFuture(QtConcurrent::run(&pool_, work));
+    const Request request{run_, file_, raw_, placedModules(), unit_, isOffsetFitted_, cancelled_, forgotten_};
+    watcher_.setFuture(QtConcurrent::run(&pool_, [request] { return compare(request); }));
 }
 
 void MeshPresenter::finish() {
     const Outcome outcome = watcher_.result();
-    if (outcome.run == run_ && !isDue_) {
+    if (outcome.raw && !*outcome.forgotten)
         raw_ = outcome.raw;
+    if (outcome.run == run_ && !isDue_) {
         mesh_ = outcome.mesh;
         usedUnit_ = outcome.unit;
         comparison_ = outcome.comparison;
@@ -172,6 +171,28 @@ void MeshPresenter::finish() {
     if (isDue_ && isActive_)
         start();
     emit changed();
+}
+
+QString MeshPresenter::sentenceOf(const CalibrationError& error) {
+    switch (error.code) {
+        case ErrorCode::TooFewPoints:
+            return tr("At least %1 placed modules are needed to lay the body on a mesh; there are %2.")
+                .arg(error.numbers.at("needed"))
+                .arg(error.numbers.at("found"));
+        case ErrorCode::NoConsensus:
+            return tr(
+                "In no pose do half of the modules lie on this mesh. Is it the mesh of this body, "
+                "in the unit chosen?");
+        case ErrorCode::DegeneratePoints:
+            return tr("The triangles of this mesh have no area.");
+        case ErrorCode::NotFinite:
+            return tr("A corner of this mesh or the place of a module is not a finite number.");
+        case ErrorCode::Cancelled:
+            return {};
+        default:
+            // compareWithMesh has no other.
+            return tr("This mesh can't be compared.");
+    }
 }
 
 QString MeshPresenter::sentenceOf(const AlignmentDoubt& doubt) {

@@ -32,7 +32,8 @@ class MeshPresenter : public QObject {
     /// Whether modules may all lie above the surface by the same.
     void setOffsetFitted(bool fitted);
     [[nodiscard]] bool isOffsetFitted() const { return isOffsetFitted_; }
-    /// Not being looked at, nothing is computed: what runs is cancelled, and done once it is looked at again.
+    /// Not being looked at, nothing is compared: what runs is cancelled, and done once it is looked at again. A file is
+    /// read to its end, once.
     void setActive(bool active);
 
     [[nodiscard]] bool hasMesh() const { return !name_.isEmpty(); }
@@ -50,13 +51,27 @@ class MeshPresenter : public QObject {
 
     /// A sentence on what to doubt, with its numbers.
     [[nodiscard]] static QString sentenceOf(const AlignmentDoubt& doubt);
+    /// A sentence on why there is no comparison; none where it was cancelled.
+    [[nodiscard]] static QString sentenceOf(const CalibrationError& error);
 
   signals:
     void changed();
 
   private:
+    using Flag = std::shared_ptr<std::atomic<bool>>;
+    struct Request {
+        std::uint64_t run = 0;
+        std::filesystem::path file;
+        std::shared_ptr<const TriangleMesh> raw;
+        std::vector<PlacedModule> modules;
+        std::optional<MeshUnit> unit;
+        bool isOffsetFitted = true;
+        Flag cancelled;
+        Flag forgotten;
+    };
     struct Outcome {
         std::uint64_t run = 0;
+        Flag forgotten;
         std::shared_ptr<const TriangleMesh> raw;
         std::shared_ptr<const TriangleMesh> mesh;
         MeshUnit unit = MeshUnit::Metre;
@@ -68,12 +83,15 @@ class MeshPresenter : public QObject {
     void compareSoon();
     void start();
     void finish();
+    /// On the thread.
+    [[nodiscard]] static Outcome compare(const Request& request);
     [[nodiscard]] std::vector<PlacedModule> placedModules() const;
 
     Workbench& workbench_;
     QThreadPool pool_;
     QFutureWatcher<Outcome> watcher_;
-    std::shared_ptr<std::atomic<bool>> cancelled_;
+    Flag cancelled_;         ///< what is being compared
+    Flag forgotten_;         ///< this mesh, which is not even to be read any more
     std::uint64_t run_ = 0;  ///< what comes of an older one is dropped
     QString name_;
     std::filesystem::path file_;

@@ -20,7 +20,8 @@ class BodyViewWidget;
 class MeshStage : public QObject {
     Q_OBJECT
   public:
-    /// All three outlive this.
+    /// All three live as long as the window shows anything. They may be gone before this is, as a window's members and
+    /// the children that it had before are: its end touches none of them.
     /// @param colours  its items' data are ColourModes
     MeshStage(MeshPresenter& presenter, BodyViewWidget& view, QComboBox& colours, QObject* parent);
 

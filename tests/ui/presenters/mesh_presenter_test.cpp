@@ -70,6 +70,48 @@ TEST_F(MeshPresenterTest, RemovedWhileItIsComparedItStaysAway) {
     EXPECT_TRUE(presenter_.complaint().isEmpty());
 }
 
+TEST_F(MeshPresenterTest, LeftInTheMiddleAFileIsNotReadAgain) {
+    open();
+    const QString name = file("body.stl", stlBytes(bodySurface(world_)));
+    presenter_.setActive(true);
+    presenter_.open(name);
+    presenter_.setActive(false);
+    ASSERT_TRUE(waitFor([&] { return !presenter_.isBusy(); }));
+    EXPECT_FALSE(presenter_.comparison());
+    ASSERT_TRUE(std::filesystem::remove(name.toStdString()));
+    presenter_.setActive(true);
+    ASSERT_TRUE(waitFor([&] { return isDone(); }));
+    EXPECT_TRUE(presenter_.comparison()) << presenter_.complaint().toStdString();
+    // Another mesh is read, and the first one again where it is asked for again.
+    presenter_.open(name);
+    ASSERT_TRUE(waitFor([&] { return isDone(); }));
+    EXPECT_TRUE(presenter_.complaint().startsWith("This mesh can't be read: ")) << presenter_.complaint().toStdString();
+}
+
+TEST_F(MeshPresenterTest, AnotherMeshIsNotTakenForTheOneBefore) {
+    open();
+    presenter_.setActive(true);
+    presenter_.open(file("body.stl", stlBytes(bodySurface(world_))));
+    presenter_.open(file("body.stl", stlBytes(scaled(bodySurface(world_), 1e3))));
+    ASSERT_TRUE(waitFor([&] { return isDone(); }));
+    ASSERT_TRUE(presenter_.comparison()) << presenter_.complaint().toStdString();
+    EXPECT_EQ(presenter_.usedUnit(), MeshUnit::Millimetre);
+}
+
+TEST_F(MeshPresenterTest, GoneInTheMiddleOfReadingOrComparingItLetsGo) {
+    open();
+    const QString name = file("body.stl", stlBytes(bodySurface(world_)));
+    for (int turns = 0; turns < 20; ++turns) {
+        MeshPresenter other(workbench_);
+        other.setActive(true);
+        other.open(name);
+        for (int i = 0; i < turns; ++i)
+            QCoreApplication::processEvents();
+        if (turns % 2)
+            other.setUnit(MeshUnit::Metre);
+    }
+}
+
 TEST_F(MeshPresenterTest, SaysWhatIsWrongWithAMeshOrABody) {
     presenter_.setActive(true);
     presenter_.open(file("body.stl", stlBytes(bodySurface(world_))));
@@ -77,6 +119,7 @@ TEST_F(MeshPresenterTest, SaysWhatIsWrongWithAMeshOrABody) {
     EXPECT_TRUE(presenter_.complaint().contains("placed modules are needed")) << presenter_.complaint().toStdString();
     presenter_.open(file("empty.stl", ""));
     ASSERT_TRUE(waitFor([&] { return isDone(); }));
+    EXPECT_TRUE(presenter_.complaint().startsWith("This mesh can't be read: "));
     EXPECT_TRUE(presenter_.complaint().contains("empty.stl")) << presenter_.complaint().toStdString();
     EXPECT_FALSE(presenter_.hasSimulatedBody());
 }
@@ -92,6 +135,23 @@ TEST(AlignmentDoubts, HaveASentenceEachWithItsNumber) {
         sentences.insert(sentence);
     }
     EXPECT_EQ(sentences.size(), 7U);
+}
+
+TEST(MeshComplaints, HaveASentenceEach) {
+    std::set<QString> sentences;
+    const std::vector<CalibrationError> errors{{ErrorCode::TooFewPoints, {{"found", 3}, {"needed", 8}}},
+                                               {ErrorCode::NoConsensus, {}},
+                                               {ErrorCode::DegeneratePoints, {}},
+                                               {ErrorCode::NotFinite, {}},
+                                               {ErrorCode::InvalidOptions, {}}};
+    for (const CalibrationError& error : errors) {
+        const QString sentence = MeshPresenter::sentenceOf(error);
+        EXPECT_TRUE(sentence.endsWith('.') || sentence.endsWith('?')) << sentence.toStdString();
+        EXPECT_FALSE(sentence.contains(QString::fromStdString(error.message()))) << sentence.toStdString();
+        sentences.insert(sentence);
+    }
+    EXPECT_EQ(sentences.size(), errors.size());
+    EXPECT_TRUE(MeshPresenter::sentenceOf(CalibrationError{ErrorCode::Cancelled, {}}).isEmpty());
 }
 
 }  // namespace

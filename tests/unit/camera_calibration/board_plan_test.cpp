@@ -71,5 +71,25 @@ TEST(BoardPlan, PlansThatCannotBeAreRefused) {
     refused([](BoardPlan& p) { p.columns = p.rows = 20; });  // 200 markers of 100
 }
 
+TEST(BoardPlan, AreTheSameBoardWhereTheyPrintAsTheSame) {
+    const auto isSame = [](BoardPlan plan, auto change) {
+        BoardPlan other = plan;
+        change(other);
+        return isSameBoard(plan, other);
+    };
+    BoardPlan chess;
+    chess.kind = BoardKind::Chessboard;
+    for (const BoardPlan& plan : {BoardPlan{}, chess}) {
+        EXPECT_TRUE(isSame(plan, [](BoardPlan&) {}));
+        EXPECT_FALSE(isSame(plan, [](BoardPlan& p) { ++p.columns; }));
+        EXPECT_FALSE(isSame(plan, [](BoardPlan& p) { ++p.rows; }));
+        EXPECT_FALSE(isSame(plan, [](BoardPlan& p) { p.square *= 2; }));
+        EXPECT_EQ(isSame(plan, [](BoardPlan& p) { p.marker *= 0.9; }), plan.kind == BoardKind::Chessboard);
+        EXPECT_EQ(isSame(plan, [](BoardPlan& p) { p.dictionary = MarkerDictionary::Dict6x6_250; }),
+                  plan.kind == BoardKind::Chessboard);
+    }
+    EXPECT_FALSE(isSameBoard(BoardPlan{}, chess));
+}
+
 }  // namespace
 }  // namespace skincal

@@ -114,6 +114,45 @@ TEST(StlFile, NoDamageBringsItDown) {
     }
 }
 
+TEST(StlFile, CancelledAnywhereItStopsReading) {
+    const TemporaryDirectory directory;
+    const TriangleMesh tube = tubeMesh(Vector3d::Zero(), Vector3d::UnitX(), 1, 10000);
+    std::string text = "solid\n";
+    for (const auto& corners : tube.triangles) {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for (const std::uint32_t corner : corners) {
+            const Vector3d& p = tube.vertices[corner];
+            text +=
+                "vertex " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+        }
+        text += "endloop\nendfacet\n";
+    }
+    for (const std::string& bytes : {stlBytes(tube), text}) {
+        writeText(directory / "tube.stl", bytes);
+        int asked = 0;
+        RunContext context;
+        context.isCancelled = [&] { return ++asked < 0; };
+        ASSERT_TRUE(readStl(directory / "tube.stl", context));
+        const int total = asked;
+        EXPECT_GT(total, 10 * 40000 / 4096) << "in every step of it";
+        for (int last = 0; last < total; ++last) {
+            asked = 0;
+            context.isCancelled = [&] { return ++asked > last; };
+            const auto mesh = readStl(directory / "tube.stl", context);
+            ASSERT_FALSE(mesh) << last << " of " << total;
+            EXPECT_THAT(mesh.error().message(), AllOf(HasSubstr("tube.stl"), HasSubstr("cancelled")));
+            EXPECT_LE(asked - last, 4);
+        }
+    }
+}
+
+TEST(StlFile, AFileTooLargeForTheMemoryIsRefusedUnread) {
+    const TemporaryDirectory directory;
+    writeText(directory / "huge.stl", "solid");
+    std::filesystem::resize_file(directory / "huge.stl", (std::uintmax_t{100} << 20U) + 1);
+    EXPECT_THAT(readStl(directory / "huge.stl").error().message(), HasSubstr("at most 100 MB"));
+}
+
 TEST(StlFile, AFileThatIsNotThereIsNamed) {
     EXPECT_THAT(readStl("nowhere.stl").error().message(), HasSubstr("nowhere.stl"));
 }

@@ -27,6 +27,28 @@ TEST(ForEachInParallel, TheCallersThreadAloneIsAskedMeanwhile) {
         });
 }
 
+TEST(ForEachInParallel, TheCallersThreadIsAskedWhileItWaitsForTheOthers) {
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<bool> asked = false;
+    std::atomic<int> left = 0;
+    forEachInParallel(
+        1000, 1,
+        [&](std::size_t) {
+            // The first turn of each other thread lasts until the caller has nothing left to do.
+            if (std::this_thread::get_id() == caller)
+                return;
+            while (!asked)
+                std::this_thread::yield();
+            ++left;
+        },
+        [](std::size_t) { return true; },
+        [&] {
+            EXPECT_EQ(std::this_thread::get_id(), caller);
+            asked = true;
+        });
+    EXPECT_TRUE(asked || left == 0);
+}
+
 TEST(ForEachInParallel, StopsBetweenChunks) {
     constexpr std::size_t kMany = 1'000'000;
     std::atomic<std::size_t> taken = 0;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
+#include "core/mesh/mesh_surface.h"
 #include "tests/unit/mesh/sample_meshes.h"
 
 namespace skincal {
@@ -31,6 +33,13 @@ Covered covered(std::uint64_t seed, std::size_t count, double offset, double noi
     }
     result.modules = test::movedBy(result.T_mesh_body.inverse(), modules);
     return result;
+}
+
+/// The number that comes with a doubt; 0 without it.
+double doubtOf(const MeshComparison& comparison, Kind kind) {
+    const auto found = std::find_if(comparison.doubts.begin(), comparison.doubts.end(),
+                                    [&](const AlignmentDoubt& doubt) { return doubt.kind == kind; });
+    return found == comparison.doubts.end() ? 0 : found->value;
 }
 
 double errorOf(const MeshComparison& comparison, const Covered& world) {
@@ -121,17 +130,51 @@ TEST(MeshComparison, OnAPlaneTheOffsetIsNotKnown) {
     EXPECT_TRUE(hasDoubt(*comparison, Kind::Slides));
 }
 
-TEST(MeshComparison, AMeshOfSomethingElseFitsBadly) {
+TEST(MeshComparison, AMeshOfSomethingElseFitsBadlyOrNotAtAll) {
     const Covered world = covered(1, 60, 0, 0.1e-3);
-    const TriangleMesh other = tubeMesh(Vector3d(0, 0, -0.2), Vector3d(0, 0, 0.2), 0.03, 60);
-    const auto comparison = compareWithMesh(world.modules, other);
-    EXPECT_TRUE(!comparison || hasDoubt(*comparison, Kind::FitsBadly));
+    const auto onTube = [&](double radius) {
+        return compareWithMesh(world.modules, tubeMesh(Vector3d(0, 0, -0.2), Vector3d(0, 0, 0.2), radius, 60));
+    };
+    const auto alike = onTube(0.07);
+    ASSERT_TRUE(alike) << alike.error().message();
+    EXPECT_GT(doubtOf(*alike, Kind::FitsBadly), 5e-3);
+    const auto other = onTube(0.03);
+    ASSERT_FALSE(other);
+    EXPECT_EQ(other.error().code, ErrorCode::NoConsensus);
 }
 
 TEST(MeshComparison, AFewModulesOnALargeBodySaySo) {
     const Covered world = covered(1, 8, 0, 0.1e-3);
     const auto comparison = compareWithMesh(world.modules, scaled(world.mesh, 6));
-    EXPECT_TRUE(!comparison || hasDoubt(*comparison, Kind::FewCovered));
+    ASSERT_TRUE(comparison) << comparison.error().message();
+    EXPECT_TRUE(hasDoubt(*comparison, Kind::FewCovered));
+}
+
+TEST(MeshComparison, AModuleOffTheMeshIsUnmatched) {
+    Covered world = covered(4, 60, 1e-3, 0.1e-3);
+    EXPECT_FALSE(hasDoubt(compareWithMesh(world.modules, world.mesh).value(), Kind::Unmatched));
+    PlacedModule& stray = world.modules[17];
+    stray.T_body_module.translation() += 0.1 * stray.T_body_module.linear().col(2);
+    const auto comparison = compareWithMesh(world.modules, world.mesh);
+    ASSERT_TRUE(comparison) << comparison.error().message();
+    EXPECT_EQ(comparison->unmatched, std::vector{stray.id});
+    EXPECT_EQ(comparison->modules.size(), world.modules.size() - 1);
+    EXPECT_EQ(doubtOf(*comparison, Kind::Unmatched), 1);
+    EXPECT_LT(errorOf(*comparison, world), 1.2e-3) << "the others lie as they did";
+}
+
+TEST(MeshComparison, AMeshOfAnotherSizeIsDoubted) {
+    // Flat, so that modules lie on it however large it is.
+    Random random(6, "size");
+    const TriangleMesh plate{{{-0.2, -0.1, 0}, {0.2, -0.1, 0}, {0.2, 0.1, 0}, {-0.2, 0.1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+    const auto modules = test::modulesOn(plate, 30, 0, random);
+    const auto same = compareWithMesh(modules, plate);
+    ASSERT_TRUE(same) << same.error().message();
+    EXPECT_FALSE(hasDoubt(*same, Kind::SizesDiffer));
+    const auto large = compareWithMesh(modules, scaled(plate, 60));
+    ASSERT_TRUE(large) << large.error().message();
+    EXPECT_GT(doubtOf(*large, Kind::SizesDiffer), 60);
+    EXPECT_LT(doubtOf(*large, Kind::SizesDiffer), 75);
 }
 
 TEST(MeshComparison, TellsTheUnitFromTheSizes) {
@@ -156,15 +199,83 @@ TEST(MeshComparison, RefusesWhatCanNotBeCompared) {
     EXPECT_EQ(codeOf(compareWithMesh(all, world.mesh, {}, cancelled)), ErrorCode::Cancelled);
 }
 
-TEST(MeshComparison, CancelledHalfWayItStops) {
-    const Covered world = covered(1, 40, 0, 0);
-    for (const int after : {0, 1, 5, 20}) {
-        int asked = 0;
-        RunContext context;
-        context.isCancelled = [&] { return ++asked > after; };
-        const auto result = compareWithMesh(world.modules, world.mesh, {}, context);
-        EXPECT_EQ(result ? ErrorCode::NotConverged : result.error().code, ErrorCode::Cancelled) << after;
+/// What becomes of work that is cancelled the n-th time it asks, for n spread over all the times that it would ask:
+/// how often it asked once it had been told to stop.
+std::vector<int> asksAfterCancelling(int steps, const std::function<void(const RunContext&)>& work) {
+    int asked = 0;
+    RunContext context;
+    context.isCancelled = [&] { return ++asked < 0; };
+    work(context);
+    const int total = asked;
+    std::vector<int> more;
+    for (int step = 0; step < steps; ++step) {
+        const int last = step * total / steps;
+        asked = 0;
+        context.isCancelled = [&] { return ++asked > last; };
+        work(context);
+        more.push_back(asked - last);
     }
+    return more;
+}
+
+TEST(MeshComparison, CancelledAnywhereItStops) {
+    const Covered world = covered(1, 40, 0, 0);
+    const auto more = asksAfterCancelling(25, [&](const RunContext& context) {
+        // How often it asks depends on which thread does what.
+        bool isTold = false;
+        RunContext heard;
+        heard.isCancelled = [&] { return isTold = context.isCancelled(); };
+        const auto result = compareWithMesh(world.modules, world.mesh, {}, heard);
+        EXPECT_EQ(result.has_value(), !isTold);
+        if (!result) {
+            EXPECT_EQ(result.error().code, ErrorCode::Cancelled);
+        }
+    });
+    for (const int asks : more)
+        EXPECT_LE(asks, 6);
+}
+
+TEST(MeshComparison, AFineMeshIsPreparedInShortSteps) {
+    // Corners repeated, as files have them; inside out.
+    const TriangleMesh tube = tubeMesh(Vector3d(0, 0, -0.2), Vector3d(0, 0, 0.2), 0.05, 20000);
+    TriangleMesh soup;
+    for (const auto& [a, b, c] : tube.triangles) {
+        const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+        soup.vertices.insert(soup.vertices.end(), {tube.vertices[c], tube.vertices[b], tube.vertices[a]});
+        soup.triangles.push_back({first, first + 1, first + 2});
+    }
+    constexpr int kSteps = 80000 / 4096;
+    int asked = 0;
+    RunContext counting;
+    counting.isCancelled = [&] { return ++asked < 0; };
+    const TriangleMesh joined = welded(soup, counting);
+    EXPECT_EQ(joined.triangles.size(), 80000U);
+    EXPECT_GT(asked, 7 * kSteps) << "corners sorted and joined, triangles";
+    asked = 0;
+    const TriangleMesh mesh = turnedOutwards(joined, counting);
+    EXPECT_GT(enclosedVolume(mesh).value(), 0);
+    EXPECT_GT(asked, 4 * kSteps) << "edges listed and sorted";
+    asked = 0;
+    const MeshSurface surface(mesh, counting);
+    EXPECT_NEAR(surface.nearest({0.06, 0, 0}, Vector3d::UnitX(), 0.1).value().distance, 0.01, 1e-6);
+    EXPECT_GT(asked, 12 * kSteps) << "faces, corners, edges, boxes, twice the tree";
+
+    for (const int asks : asksAfterCancelling(40, [&](const RunContext& context) { (void)welded(soup, context); }))
+        EXPECT_LE(asks, 1);
+    for (const int asks :
+         asksAfterCancelling(40, [&](const RunContext& context) { (void)turnedOutwards(joined, context); }))
+        EXPECT_LE(asks, 1);
+    bool isWhole = true;
+    for (const int asks : asksAfterCancelling(40, [&](const RunContext& context) {
+             const MeshSurface half(mesh, context);
+             EXPECT_EQ(half.nearest({0.06, 0, 0}, Vector3d::UnitX(), 0.1).has_value(), isWhole);
+             isWhole = false;
+         }))
+        EXPECT_LE(asks, 1);
+    RunContext never;
+    never.isCancelled = [] { return true; };
+    EXPECT_TRUE(welded(soup, never).triangles.empty());
+    EXPECT_EQ(turnedOutwards(joined, never).triangles, joined.triangles);
 }
 
 }  // namespace

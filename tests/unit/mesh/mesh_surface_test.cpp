@@ -117,6 +117,17 @@ TEST(TriangleMesh, OneThatIsInsideOutIsTurnedAndOneWithAHoleIsLeftAlone) {
     EXPECT_EQ(turnedOutwards(mesh).triangles, mesh.triangles);
 }
 
+TEST(TriangleMesh, FarFromTheOriginItIsTurnedAsWell) {
+    const TriangleMesh mesh = transformed(cube(), makeIsometry(Matrix3d::Identity(), Vector3d(3e8, -7e8, 1e9)));
+    EXPECT_NEAR(enclosedVolume(mesh).value(), 8, 1e-12);
+    TriangleMesh insideOut = mesh;
+    for (auto& corners : insideOut.triangles)
+        std::swap(corners[1], corners[2]);
+    EXPECT_NEAR(enclosedVolume(insideOut).value(), -8, 1e-12);
+    EXPECT_EQ(turnedOutwards(insideOut).triangles, mesh.triangles);
+    EXPECT_EQ(turnedOutwards(mesh).triangles, mesh.triangles);
+}
+
 TEST(TriangleMesh, ATubeIsClosedAndOutsideOut) {
     Random random(3, "tube");
     for (int i = 0; i < 20; ++i) {

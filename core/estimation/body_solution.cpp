@@ -21,11 +21,14 @@ bool isNamed(const BodyEstimate& estimate, Finding::Kind kind, ModuleId id) {
 /// Patches whose gravity is their own; those that moved as a whole have been named.
 void reportOwnGravity(BodySolution& solution) {
     BodyEstimate& estimate = solution.estimate;
+    // Gravity was read, and no patch can use it: poses that are too alike make shapes up.
+    const auto& held = solution.gravityFrame.R_g_o;
+    const bool isAnyHeld = std::any_of(held.begin(), held.end(), [](const auto& R) { return R.has_value(); });
     for (std::size_t k = 0; solution.input.gravity->poseCount() > 0 && k < solution.layout.patches.size(); ++k) {
         const Patch& patch = solution.layout.patches[k];
         if (solution.gravityFrame.R_g_o[k] || !solution.body.T_r_o[k] || patch.modules.size() < 2)
             continue;
-        estimate.trustAtMost = Trust::Usable;
+        estimate.trustAtMost = isAnyHeld ? Trust::Usable : Trust::NotToBeTrusted;
         if (!isNamed(estimate, Finding::Kind::MovedPatch, solution.input.skin->modules[patch.modules.front()].id))
             estimate.warnings.push_back(
                 fmt::format("patch {}: gravity disagrees with the other patches or is too alike in all poses; its "

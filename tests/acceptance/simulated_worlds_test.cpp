@@ -257,7 +257,8 @@ TEST(PaperStudy, TableOneReachesTheCramerRaoBound) {
     double logarithms = 0;
     for (const ExperimentRow& row : study.rows) {
         const bool isFlat = row.experiment.find("flat") != std::string::npos;
-        EXPECT_GE(row.ours.solved, isFlat ? 15 : 39) << row.experiment << ", " << row.quantity;
+        // Of flat patches far away most pictures could be of two poses that differ in the quantity: no answer then.
+        EXPECT_GE(row.ours.solved, isFlat ? 6 : 39) << row.experiment << ", " << row.quantity;
         const double ratio = *row.ours.rms / *row.bound;
         logarithms += std::log(ratio) / static_cast<double>(study.rows.size());
         // 1.1, and three standard errors of an rms over so many trials.

@@ -159,14 +159,25 @@ TEST(SolutionReview, StopsWhereverItIsCancelled) {
     int polls = 0;
     int stopAt = -1;
     RunContext context;
-    context.isCancelled = [&] { return stopAt >= 0 && polls >= stopAt ? true : (++polls, false); };
+    bool wasCancelled = false;
+    context.isCancelled = [&] {
+        wasCancelled = stopAt >= 0 && polls >= stopAt;
+        polls += wasCancelled ? 0 : 1;
+        return wasCancelled;
+    };
     ASSERT_TRUE(reviewSolution(noisy.input, noisy.world.state(), gauge, plainSquares(), context));
     const int all = polls;
     EXPECT_GE(all, 4) << "before the factorisation, in the inverse, in the reviews and in the covariances";
     for (stopAt = 0; stopAt < all; ++stopAt) {
         polls = 0;
+        wasCancelled = false;
         const auto review = reviewSolution(noisy.input, noisy.world.state(), gauge, plainSquares(), context);
-        ASSERT_FALSE(review) << stopAt;
+        // How often it asks depends on how threads share the work: it may have been done before.
+        if (review) {
+            EXPECT_LE(polls, stopAt);
+            EXPECT_FALSE(wasCancelled) << stopAt;
+            continue;
+        }
         EXPECT_EQ(review.error().code, ErrorCode::Cancelled);
     }
 }

@@ -15,7 +15,7 @@ constexpr double kDecisive = 6.0;
 tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& input, BodyState start,
                                                          const std::vector<ViewAlternative>& alternatives,
                                                          const AdjustmentOptions& options, const RunContext& context) {
-    SettledViews settled{std::move(start), {}, {}, false};
+    SettledViews settled{std::move(start), {}, {}};
     std::set<std::size_t> undecided;
     const auto& modules = settled.state.T_r_u;
     const auto first = std::find_if(modules.begin(), modules.end(), [](const auto& T) { return T.has_value(); });
@@ -46,11 +46,9 @@ tl::expected<SettledViews, CalibrationError> settleViews(const AdjustmentInput& 
             undecided.insert(alternative.view);
         const bool better = !best || more < 0;
         settled.alternatives.push_back(alternative);
-        if (better)
-            settled.alternatives.back().T_r_v = *standing;
         if (better) {
+            settled.alternatives.back().T_r_v = *standing;
             settled.state = std::move(other);
-            settled.changed = true;
             best = std::move(result);
         }
     }

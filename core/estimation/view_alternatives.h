@@ -18,7 +18,6 @@ struct SettledViews {
     BodyState state;
     std::vector<std::size_t> undecided;         ///< views whose alternative costs nearly as little, rising
     std::vector<ViewAlternative> alternatives;  ///< places not taken
-    bool changed = false;                       ///< a view stands elsewhere than at the start
 };
 
 /// Settles by cost what no other evidence could: tries each alternative in turn, adjusts, and keeps the one that the

@@ -6,24 +6,15 @@
 #include <vector>
 
 #include "core/formats/camera_file.h"
+#include "core/formats/yaml_number.h"
 
 namespace skincal {
 namespace {
 
-/// Both YAML 1.1 and OpenCV's parser ask for a point in what is not an integer.
-std::string number(double value) {
-    std::string text = fmt::format("{}", value);
-    if (text.find('.') == std::string::npos) {
-        const std::size_t exponent = text.find('e');
-        text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");
-    }
-    return text;
-}
-
 std::string list(std::span<const double> values) {
     std::vector<std::string> texts;
     for (const double value : values)
-        texts.push_back(number(value));
+        texts.push_back(yamlNumber(value));
     return fmt::format("[ {} ]", fmt::join(texts, ", "));
 }
 

@@ -10,6 +10,7 @@
 #include "core/formats/files.h"
 #include "core/formats/json_cursor.h"
 #include "core/formats/tree_file.h"
+#include "core/formats/yaml_number.h"
 
 namespace skincal {
 namespace {
@@ -21,20 +22,10 @@ bool isXml(std::string_view bytes) {
     return first != std::string_view::npos && bytes[first] == '<';
 }
 
-/// A number that every YAML parser takes for one: Python's asks for a point before the exponent.
-std::string number(double value) {
-    std::string text = fmt::format("{}", value);
-    if (text.find('.') == std::string::npos) {
-        const std::size_t exponent = text.find('e');
-        text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");
-    }
-    return text;
-}
-
 std::string matrix(std::string_view key, int rows, std::span<const double> values) {
     std::vector<std::string> texts;
     for (const double value : values)
-        texts.push_back(number(value));
+        texts.push_back(yamlNumber(value));
     return fmt::format("{}:\n  rows: {}\n  cols: {}\n  data: [{}]\n", key, rows,
                        values.size() / static_cast<std::size_t>(rows), fmt::join(texts, ", "));
 }

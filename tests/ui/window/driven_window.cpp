@@ -93,7 +93,7 @@ bool DrivenWindow::moveCameraOn() {
     return click("moveCamera") && waitFor([&] { return rig.isCameraAtRest(); });
 }
 
-void DrivenWindow::takePicture(const QString& name) {
+void DrivenWindow::takeInBothThemes(const QString& name, const std::function<QImage()>& take) {
     const QString folder = qEnvironmentVariable("SKINCAL_SCREENSHOTS");
     if (folder.isEmpty())
         return;
@@ -102,27 +102,23 @@ void DrivenWindow::takePicture(const QString& name) {
         window.setDark(dark);
         for (int turn = 0; turn < 20; ++turn)
             QCoreApplication::processEvents();
+        take().save(QDir(folder).filePath(name + (dark ? QStringLiteral("-dark.png") : QStringLiteral(".png"))));
+    }
+}
+
+void DrivenWindow::takePicture(const QString& name) {
+    takeInBothThemes(name, [this] {
         QImage picture = window.grab().toImage();
         // Only the view itself can read what OpenGL drew.
         BodyViewWidget& body = window.bodyView();
         QPainter(&picture).drawImage(body.mapTo(&window, QPoint(0, 0)), body.grabPicture());
         constexpr int kWidth = 1080;  // what a page on the web has room for
-        picture = picture.scaledToWidth(kWidth, Qt::SmoothTransformation);
-        picture.save(QDir(folder).filePath(name + (dark ? QStringLiteral("-dark.png") : QStringLiteral(".png"))));
-    }
+        return picture.scaledToWidth(kWidth, Qt::SmoothTransformation);
+    });
 }
 
 void DrivenWindow::takePictureOf(QWidget& widget, const QString& name) {
-    const QString folder = qEnvironmentVariable("SKINCAL_SCREENSHOTS");
-    if (folder.isEmpty())
-        return;
-    QDir().mkpath(folder);
-    for (const bool dark : {false, true}) {
-        window.setDark(dark);
-        for (int turn = 0; turn < 20; ++turn)
-            QCoreApplication::processEvents();
-        widget.grab().save(QDir(folder).filePath(name + (dark ? QStringLiteral("-dark.png") : QStringLiteral(".png"))));
-    }
+    takeInBothThemes(name, [&widget] { return widget.grab().toImage(); });
 }
 
 void DrivenWindow::takeBodyPicture(const QString& name) {

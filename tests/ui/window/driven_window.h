@@ -46,6 +46,9 @@ class DrivenWindow {
     SimulatedRig rig;
     Workbench workbench;
     MainWindow window;
+
+  private:
+    void takeInBothThemes(const QString& name, const std::function<QImage()>& take);
 };
 
 }  // namespace skincal

@@ -33,6 +33,8 @@ void addSimulateCommand(CommandLine& line);
 void addReproducePaperCommand(CommandLine& line);
 void addAccuracyStudyCommand(CommandLine& line);
 void addDemoCommand(CommandLine& line);
+void addExploreCommand(CommandLine& line);
+void addVirtualSkinCommand(CommandLine& line);
 
 /// Prints "skincal: MESSAGE" to standard error and returns kBadInput.
 int badInput(const std::string& message);

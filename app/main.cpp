@@ -64,6 +64,8 @@ int runProgram(int argc, char** argv) {
     addExportCommand(line);
     addReproducePaperCommand(line);
     addAccuracyStudyCommand(line);
+    addExploreCommand(line);
+    addVirtualSkinCommand(line);
     line.app.footer(
         "Start here:\n"
         "  skincal demo                                    simulate a skin, calibrate it, look at the result\n"

@@ -60,6 +60,11 @@ class SkinDevice : public QObject {
     /// @return the token, rising with every call.
     virtual std::uint64_t light(const std::vector<LitModule>& lit) = 0;
 
+    /// Modules of an earlier time: those that have a unique id keep their module ids.
+    virtual void remember(const Skin& /*skin*/) {}
+    /// These will be lit, one after the other or in any order: a device may tell its cells beforehand.
+    virtual void prepare(const std::vector<std::vector<LitModule>>& /*sets*/) {}
+
   signals:
     void opened();
     void closed();

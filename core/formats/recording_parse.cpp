@@ -43,7 +43,9 @@ ModuleIndex readModules(const JsonCursor& root, Skin& skin) {
             item.at("type").fail(fmt::format("expected a name from module_types, found '{}'", type));
         if (!index.emplace(id, skin.modules.size()).second)
             item.at("id").fail(fmt::format("expected an id of its own, {} is taken", id.value));
-        skin.modules.push_back({id, found->second});
+        skin.modules.push_back({id, found->second, {}});
+        if (item.holds("unique_id"))
+            skin.modules.back().uniqueId = item.at("unique_id").text();
     }
     return index;
 }

@@ -46,8 +46,11 @@ Json skinToJson(const Recording& recording) {
             addKeys(json["module_types"].back(), unknown->second);
     }
     json["modules"] = Json::array();
-    for (const SkinModule& module : skin.modules)
+    for (const SkinModule& module : skin.modules) {
         json["modules"].push_back({{"id", module.id.value}, {"type", skin.templates[module.type].name}});
+        if (!module.uniqueId.empty())
+            json["modules"].back()["unique_id"] = module.uniqueId;
+    }
     json["links"] = Json::array();
     for (const Link& link : skin.links) {
         Json entry;

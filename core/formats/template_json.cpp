@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/formats/files.h"
 #include "core/formats/recording_parse.h"
 
 namespace skincal {
@@ -36,6 +37,19 @@ nlohmann::ordered_json toJson(const Vector3d& v) {
 }
 
 }  // namespace
+
+tl::expected<ModuleTemplate, FileError> readTemplateFile(const std::filesystem::path& file) {
+    constexpr std::size_t kMostBytes = 1 << 20;
+    const auto text = readFile(file, kMostBytes);
+    if (!text)
+        return tl::unexpected(text.error());
+    try {
+        const nlohmann::json json = parseJson(*text, file);
+        return readTemplate(JsonCursor(json, file));
+    } catch (const FileErrorException& error) {
+        return tl::unexpected(error.error);
+    }
+}
 
 ModuleTemplate readTemplate(const JsonCursor& cursor) {
     ModuleTemplate type;

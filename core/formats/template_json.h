@@ -8,6 +8,9 @@
 
 namespace skincal {
 
+/// The module template in a file of its own. The error names file and place.
+[[nodiscard]] tl::expected<ModuleTemplate, FileError> readTemplateFile(const std::filesystem::path& file);
+
 /// A module template as recording.md and body-model.md write it. Reading throws FileErrorException.
 [[nodiscard]] ModuleTemplate readTemplate(const JsonCursor& cursor);
 [[nodiscard]] nlohmann::ordered_json templateToJson(const ModuleTemplate& type);

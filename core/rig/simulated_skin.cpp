@@ -1,7 +1,6 @@
 #include "core/rig/simulated_skin.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 
 namespace skincal {
@@ -16,10 +15,6 @@ constexpr RigClock::Time kReport = 30ms;
 constexpr RigClock::Time kPeriod = 10ms;
 constexpr RigClock::Time kLatch = 4ms;
 constexpr RigClock::Time kLate = 1s;
-
-constexpr double kProximityNoise = 0.004;
-constexpr double kForceNoise = 0.01;        // N
-constexpr double kTemperatureNoise = 0.03;  // degrees
 
 /// Positions in Skin::modules, each after one that it is linked to as far as that is possible.
 std::vector<std::size_t> floodOrder(const Skin& skin) {
@@ -52,11 +47,10 @@ SimulatedSkin::SimulatedSkin(SimulatedRig& rig, QObject* parent)
     : SkinDevice(parent),
       rig_(&rig),
       world_(rig.sharedWorld()),
-      accelerometers_(accelerometersOf(*world_)),
+      senses_(world_),
       order_(floodOrder(world_->skin)),
       noise_(world_->seed, "streamed noise"),
-      touchNoise_(world_->seed, "touch noise"),
-      touch_(world_) {
+      touchNoise_(world_->seed, "touch noise") {
     connect(&rig, &SimulatedRig::skinPulled, this, &SimulatedSkin::unplugged);
     connect(&rig, &QObject::destroyed, this, &SimulatedSkin::shut);
 }
@@ -199,46 +193,33 @@ void SimulatedSkin::tick(Time when, std::uint64_t SimulatedSkin::*run, std::uint
     });
 }
 
-Vector3d SimulatedSkin::readAccelerometer(std::size_t module, const BodyForces& forces, Random& chance) const {
-    const Isometry3d& T_r_u = poseAtGravity(*world_, module);
-    const Vector3d chip_u = world_->trueTemplate(module).accelerometer.value_or(Vector3d::Zero());
-    return accelerometers_[module].read(T_r_u.linear().transpose() * forces.at(T_r_u * chip_u), chance);
-}
-
 void SimulatedSkin::sampleAcceleration(Time time) {
     const BodyForces forces = rig_->forces(time);
     AccelerationSample sample;
     sample.time = time;
     sample.readings.reserve(world_->T_r_u.size());
     for (std::size_t u = 0; u < world_->T_r_u.size(); ++u)
-        sample.readings.push_back({world_->skin.modules[u].id, readAccelerometer(u, forces, noise_)});
+        sample.readings.push_back({world_->skin.modules[u].id, senses_.acceleration(u, forces, noise_)});
     emit accelerationArrived(sample);
 }
 
 void SimulatedSkin::sampleTactile(Time time) {
-    const std::chrono::duration<double> passed = time - feltAt_.value_or(time);
-    touch_.advance(rig_->contact(), std::max(0.0, passed.count()));
-    feltAt_ = time;
+    senses_.feel(rig_->contact(), time);
     const BodyForces forces = rig_->forces(time);
     TactileSample sample;
     sample.time = time;
     sample.readings.reserve(world_->T_r_u.size());
     for (std::size_t u = 0; u < world_->T_r_u.size(); ++u) {
-        const ModuleTouch& felt = touch_.modules()[u];
-        const Vector3d read_u = readAccelerometer(u, forces, touchNoise_);
+        const Vector3d read_u = senses_.acceleration(u, forces, touchNoise_);
+        const RigSenses::Touch touch = senses_.touch(u, touchNoise_);
         TactileSample::Reading reading;
         reading.module = world_->skin.modules[u].id;
-        reading.proximity =
-            static_cast<float>(std::clamp(felt.proximity + kProximityNoise * touchNoise_.normal(), 0.0, 1.0));
-        const auto& sensors = world_->trueTemplate(u).sensors;
-        const auto cells =
-            std::count_if(sensors.begin(), sensors.end(), [](const auto& s) { return s.kind == "force"; });
-        for (std::size_t i = 0; i < std::min<std::size_t>(reading.force.size(), static_cast<std::size_t>(cells)); ++i)
-            reading.force.at(i) =
-                static_cast<float>(std::max(0.0, felt.force.at(i) + kForceNoise * touchNoise_.normal()));
-        reading.temperature = static_cast<float>(felt.temperature + kTemperatureNoise * touchNoise_.normal());
-        for (std::size_t i = 0; i < 3; ++i)
+        reading.proximity = static_cast<float>(touch.proximity);
+        for (std::size_t i = 0; i < 3; ++i) {
+            reading.force.at(i) = static_cast<float>(touch.force.at(i));
             reading.acceleration.at(i) = static_cast<float>(read_u[static_cast<Eigen::Index>(i)]);
+        }
+        reading.temperature = static_cast<float>(touch.temperature);
         sample.readings.push_back(reading);
     }
     emit tactileArrived(sample);

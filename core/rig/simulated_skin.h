@@ -4,8 +4,8 @@
 
 #include "core/device/skin_device.h"
 #include "core/geometry/random.h"
+#include "core/rig/rig_senses.h"
 #include "core/rig/simulated_rig.h"
-#include "core/simulation/simulated_accelerometer.h"
 
 namespace skincal {
 
@@ -49,18 +49,15 @@ class SimulatedSkin : public SkinDevice {
     void unplugged();
     void findNext(std::uint64_t exploration, Time started, std::size_t position);
     void tick(Time when, std::uint64_t SimulatedSkin::*run, std::uint64_t started, Stream sample);
-    [[nodiscard]] Vector3d readAccelerometer(std::size_t module, const BodyForces& forces, Random& chance) const;
     void sampleAcceleration(Time time);
     void sampleTactile(Time time);
 
     QPointer<SimulatedRig> rig_;
     std::shared_ptr<const World> world_;
-    std::vector<SimulatedAccelerometer> accelerometers_;
+    RigSenses senses_;
     std::vector<std::size_t> order_;  ///< in which modules are found
     Random noise_;
     Random touchNoise_;
-    TouchField touch_;
-    std::optional<Time> feltAt_;
     State state_ = State::Closed;
     std::uint64_t session_ = 0;
     std::uint64_t exploration_ = 0;

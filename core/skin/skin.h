@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -14,7 +15,8 @@ enum class LinkKind { Adjacent, Cable };
 
 struct SkinModule {
     ModuleId id;
-    std::size_t type = 0;  ///< index into Skin::templates
+    std::size_t type = 0;    ///< index into Skin::templates
+    std::string uniqueId{};  ///< burnt into the module, whatever its number; empty where the network has none
 };
 
 /// A port-to-port connection as the network reported it; ports count from 0.

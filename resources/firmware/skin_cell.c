@@ -100,38 +100,44 @@ static void tallied(skin_cell* cell, int port, const uint8_t* payload, size_t le
     if (!skin_parse(skincal_wire_Tallied_fields, &answer, payload, length) || answer.query != cell->tally.query ||
         !(cell->tally.waiting & 1u << port))
         return;
-    cell->tally.waiting &= (uint8_t)~(1u << port);
+    cell->tally.waiting &= (uint8_t) ~(1u << port);
     cell->tally.sum += answer.cells;
 }
 
 /* What a range of cells is told, this one being in it. */
 static void obey(skin_cell* cell, const skin_header* header, const uint8_t* payload, size_t length) {
     switch (header->type) {
-    case TYPE_REPORT: {
-        skincal_wire_Report report = skincal_wire_Report_init_zero;
-        if (skin_parse(skincal_wire_Report_fields, &report, payload, length) && (unsigned)report.subject < 4) {
-            cell->to_report |= (uint8_t)(1u << report.subject);
-            if (report.subject == skincal_wire_Subject_REST)
-                cell->senses.asked_run = report.run;
+        case TYPE_REPORT: {
+            skincal_wire_Report report = skincal_wire_Report_init_zero;
+            if (skin_parse(skincal_wire_Report_fields, &report, payload, length) && (unsigned)report.subject < 4) {
+                cell->to_report |= (uint8_t)(1u << report.subject);
+                if (report.subject == skincal_wire_Subject_REST)
+                    cell->senses.asked_run = report.run;
+            }
+            break;
         }
-        break;
-    }
-    case TYPE_TALLY: tally(cell, payload, length); break;
-    case TYPE_TIME_MARK:
-        /* Stamped for the moment at which its last byte came. */
-        cell->link.offset_us = header->time_us - skin_now(cell);
-        break;
-    case TYPE_PATTERN:
-    case TYPE_MASK:
-    case TYPE_WORDS: skin_leds_receive(cell, header, payload, length); break;
-    case TYPE_MEASURE:
-    case TYPE_STREAM: skin_senses_receive(cell, header, payload, length); break;
-    default: break; /* of a newer version, for newer cells */
+        case TYPE_TALLY:
+            tally(cell, payload, length);
+            break;
+        case TYPE_TIME_MARK:
+            /* Stamped for the moment at which its last byte came. */
+            cell->link.offset_us = header->time_us - skin_now(cell);
+            break;
+        case TYPE_PATTERN:
+        case TYPE_MASK:
+        case TYPE_WORDS:
+            skin_leds_receive(cell, header, payload, length);
+            break;
+        case TYPE_MEASURE:
+        case TYPE_STREAM:
+            skin_senses_receive(cell, header, payload, length);
+            break;
+        default:
+            break; /* of a newer version, for newer cells */
     }
 }
 
-static bool from_computer(skin_cell* cell, int port, const skin_header* header, const uint8_t* payload,
-                          size_t length) {
+static bool from_computer(skin_cell* cell, int port, const skin_header* header, const uint8_t* payload, size_t length) {
     if (port != cell->tree.parent || header->epoch != cell->tree.epoch)
         return true;
     if (cell->tree.number == 0)
@@ -167,20 +173,26 @@ static bool to_computer(skin_cell* cell, int port, const skin_header* header, co
 static bool from_neighbour(skin_cell* cell, int port, const skin_header* header, const uint8_t* payload,
                            size_t length) {
     switch (header->type) {
-    case TYPE_HELLO: return hello(cell, port, payload, length);
-    case TYPE_TALLIED: tallied(cell, port, payload, length); return true;
-    case TYPE_BOOTED:
-        /* Whatever was agreed with who was there before is void; the computer has to explore again. */
-        skin_link_drop_port(&cell->link, port);
-        cell->tree.booted |= (uint8_t)(1u << port);
-        return true;
-    case TYPE_EXPLORE:
-    case TYPE_EXPLORED:
-    case TYPE_SUBTREE:
-    case TYPE_ASSIGN:
-    case TYPE_NEIGHBOUR: return skin_tree_receive(cell, port, header, payload, length);
-    case TYPE_REFUSED: return true;
-    default: return refuse(cell, port, header->type, skincal_wire_Refused_Reason_UNKNOWN_TYPE);
+        case TYPE_HELLO:
+            return hello(cell, port, payload, length);
+        case TYPE_TALLIED:
+            tallied(cell, port, payload, length);
+            return true;
+        case TYPE_BOOTED:
+            /* Whatever was agreed with who was there before is void; the computer has to explore again. */
+            skin_link_drop_port(&cell->link, port);
+            cell->tree.booted |= (uint8_t)(1u << port);
+            return true;
+        case TYPE_EXPLORE:
+        case TYPE_EXPLORED:
+        case TYPE_SUBTREE:
+        case TYPE_ASSIGN:
+        case TYPE_NEIGHBOUR:
+            return skin_tree_receive(cell, port, header, payload, length);
+        case TYPE_REFUSED:
+            return true;
+        default:
+            return refuse(cell, port, header->type, skincal_wire_Refused_Reason_UNKNOWN_TYPE);
     }
 }
 
@@ -188,10 +200,14 @@ static bool handle(skin_cell* cell, int port, const skin_header* header, const u
     if (header->incompatible != 0)
         return refuse(cell, port, header->type, skincal_wire_Refused_Reason_UNKNOWN_FLAG);
     switch (header->direction) {
-    case SKIN_LOCAL: return from_neighbour(cell, port, header, payload, length);
-    case SKIN_DOWN: return from_computer(cell, port, header, payload, length);
-    case SKIN_UP: return to_computer(cell, port, header, payload, length);
-    default: return true;
+        case SKIN_LOCAL:
+            return from_neighbour(cell, port, header, payload, length);
+        case SKIN_DOWN:
+            return from_computer(cell, port, header, payload, length);
+        case SKIN_UP:
+            return to_computer(cell, port, header, payload, length);
+        default:
+            return true;
     }
 }
 
@@ -248,17 +264,21 @@ static uint32_t report(skin_cell* cell) {
             continue;
         bool sent = true;
         switch (subject) {
-        case skincal_wire_Subject_CELL_INFO:
-            /* A link of which neither end knows yet would be missing without anybody noticing. */
-            wait = skin_tree_introduced(cell);
-            sent = wait == 0 && report_cell_info(cell);
-            wait = wait == 0 ? UINT32_MAX : wait;
-            break;
-        case skincal_wire_Subject_LATCHED: sent = report_latched(cell); break;
-        default: sent = skin_senses_report(cell, (skincal_wire_Subject)subject); break;
+            case skincal_wire_Subject_CELL_INFO:
+                /* A link of which neither end knows yet would be missing without anybody noticing. */
+                wait = skin_tree_introduced(cell);
+                sent = wait == 0 && report_cell_info(cell);
+                wait = wait == 0 ? UINT32_MAX : wait;
+                break;
+            case skincal_wire_Subject_LATCHED:
+                sent = report_latched(cell);
+                break;
+            default:
+                sent = skin_senses_report(cell, (skincal_wire_Subject)subject);
+                break;
         }
         if (sent)
-            cell->to_report &= (uint8_t)~(1u << subject);
+            cell->to_report &= (uint8_t) ~(1u << subject);
     }
     return wait;
 }
@@ -270,6 +290,8 @@ uint32_t skin_cell_run(skin_cell* cell) {
     finish_tally(cell);
     const uint32_t reports = report(cell);
     const uint32_t link = skin_link_run(&cell->link);
+    if (cell->tree.open & cell->link.silent)
+        return 0; /* nobody is there: that may have been the last that the tree waited for */
     wait = leds < wait ? leds : wait;
     wait = senses < wait ? senses : wait;
     wait = reports < wait ? reports : wait;

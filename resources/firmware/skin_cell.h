@@ -24,8 +24,8 @@ enum {
 
 typedef struct {
     uint8_t unique_id[12];
-    char type[16];   /* name of the module template, ends with a zero */
-    char name[24];   /* of the firmware, likewise */
+    char type[16]; /* name of the module template, ends with a zero */
+    char name[24]; /* of the firmware, likewise */
     uint32_t firmware;
     uint32_t schema; /* as in message Hello */
 } skin_identity;
@@ -45,7 +45,7 @@ typedef struct {
     uint8_t booted;  /* ports behind which somebody has booted, of which the computer was not told yet */
     uint8_t alive;   /* ports on which a neighbour takes part in this exploration */
     uint32_t introduced_at;
-    uint8_t heard;   /* ports whose neighbour has told its number */
+    uint8_t heard; /* ports whose neighbour has told its number */
     uint16_t neighbour[SKIN_MAX_PORTS];
     uint8_t neighbour_port[SKIN_MAX_PORTS];
 } skin_tree;
@@ -94,7 +94,7 @@ typedef struct {
     bool measuring;
     uint32_t run;       /* of what was measured */
     uint32_t asked_run; /* that the computer waits for */
-    bool streams[4]; /* by subject */
+    bool streams[4];    /* by subject */
     uint32_t period_us[4];
     uint32_t next_us[4];
     uint32_t sample_at;

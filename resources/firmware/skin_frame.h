@@ -15,7 +15,7 @@ enum {
     SKIN_VERSION = 1,
     SKIN_HEADER = 16,
     SKIN_MAX_PAYLOAD = 234,
-    SKIN_EMPTY_FRAME = 22, /* bytes of an encoded frame without a payload */
+    SKIN_EMPTY_FRAME = 22,  /* bytes of an encoded frame without a payload */
     SKIN_MAX_ENCODED = 256, /* with the zero at its end */
 };
 

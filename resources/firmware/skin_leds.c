@@ -3,12 +3,16 @@
 
 static bool lit(const skin_cell* cell, const skin_pattern* pattern) {
     switch (pattern->source) {
-    case skincal_wire_Source_ALL: return true;
-    case skincal_wire_Source_CELL: return pattern->argument == cell->tree.number;
-    case skincal_wire_Source_WORD:
-        return pattern->argument < 64 && ((cell->leds.word >> pattern->argument & 1u) != 0) != pattern->inverted;
-    case skincal_wire_Source_MASK: return cell->leds.mask != 0;
-    default: return false;
+        case skincal_wire_Source_ALL:
+            return true;
+        case skincal_wire_Source_CELL:
+            return pattern->argument == cell->tree.number;
+        case skincal_wire_Source_WORD:
+            return pattern->argument < 64 && ((cell->leds.word >> pattern->argument & 1u) != 0) != pattern->inverted;
+        case skincal_wire_Source_MASK:
+            return cell->leds.mask != 0;
+        default:
+            return false;
     }
 }
 
@@ -83,9 +87,15 @@ static void word(skin_cell* cell, const skin_header* header, const uint8_t* payl
 
 void skin_leds_receive(skin_cell* cell, const skin_header* header, const uint8_t* payload, size_t length) {
     switch (header->type) {
-    case TYPE_PATTERN: queue(cell, header, payload, length); break;
-    case TYPE_MASK: mask(cell, header, payload, length); break;
-    default: word(cell, header, payload, length); break;
+        case TYPE_PATTERN:
+            queue(cell, header, payload, length);
+            break;
+        case TYPE_MASK:
+            mask(cell, header, payload, length);
+            break;
+        default:
+            word(cell, header, payload, length);
+            break;
     }
 }
 

@@ -8,8 +8,7 @@ static bool reached(uint32_t now, uint32_t when) {
     return (int32_t)(now - when) >= 0;
 }
 
-void skin_link_init(skin_link* link, const skin_board* board, int ports, uint32_t timeout_us,
-                    uint16_t first_sequence) {
+void skin_link_init(skin_link* link, const skin_board* board, int ports, uint32_t timeout_us, uint16_t first_sequence) {
     memset(link, 0, sizeof *link);
     link->board = board;
     link->ports = ports < SKIN_MAX_PORTS ? ports : SKIN_MAX_PORTS;
@@ -61,7 +60,7 @@ void skin_link_drop_routed(skin_link* link) {
 
 void skin_link_drop_port(skin_link* link, int port) {
     for (int b = 0; b < SKIN_BUFFERS; ++b)
-        link->buffer[b].waiting &= (uint8_t)~(1u << port);
+        link->buffer[b].waiting &= (uint8_t) ~(1u << port);
 }
 
 bool skin_link_is_new(skin_link* link, int port, const skin_header* header) {
@@ -126,7 +125,7 @@ void skin_link_acknowledged(skin_link* link, int port, const skin_header* ack) {
             continue;
         const int16_t behind = (int16_t)(ack->sequence - buffer->sequence[port]);
         if (behind == 0 || (behind > 0 && behind <= WINDOW && (ack->time_us >> (behind - 1) & 1u))) {
-            buffer->waiting &= (uint8_t)~(1u << port);
+            buffer->waiting &= (uint8_t) ~(1u << port);
             if (!any || (int32_t)(buffer->sent[port] - latest) > 0)
                 latest = buffer->sent[port];
             any = true;
@@ -173,7 +172,7 @@ static void send_buffer(skin_link* link, int port, skin_buffer* buffer, uint32_t
         header.time_us = now + link->offset_us + SKIN_EMPTY_FRAME * link->board->byte_ns / 1000;
     send_frame(link, port, &header, buffer->payload, buffer->length);
     if (!(header.compatible & SKIN_RELIABLE)) {
-        buffer->waiting &= (uint8_t)~(1u << port);
+        buffer->waiting &= (uint8_t) ~(1u << port);
         return;
     }
     /* Nobody may be there to answer an Explore: that has to be found out soon. */
@@ -205,7 +204,7 @@ static skin_buffer* next_buffer(skin_link* link, int port, uint32_t now, uint32_
             continue;
         }
         if (buffer->tries[port] >= SKIN_TRIES) {
-            buffer->waiting &= (uint8_t)~(1u << port);
+            buffer->waiting &= (uint8_t) ~(1u << port);
             link->silent |= (uint8_t)(1u << port);
             ++link->given_up;
             continue;

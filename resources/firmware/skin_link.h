@@ -18,8 +18,8 @@ extern "C" {
 #endif
 
 enum {
-    SKIN_TRIES = 16, /* the wait for an acknowledgement doubles with every fourth */
-    SKIN_ACK_DELAY_US = 400,  /* so that one acknowledges several */
+    SKIN_TRIES = 16,         /* the wait for an acknowledgement doubles with every fourth */
+    SKIN_ACK_DELAY_US = 400, /* so that one acknowledges several */
     SKIN_TYPE_ACK = 1,
     SKIN_TYPE_TIME_MARK = 40,
 };

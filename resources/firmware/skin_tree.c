@@ -130,10 +130,17 @@ bool skin_tree_receive(skin_cell* cell, int port, const skin_header* header, con
     if (header->epoch != cell->tree.epoch)
         return true;
     switch (header->type) {
-    case TYPE_EXPLORED: explored(cell, port, payload, length); return true;
-    case TYPE_SUBTREE: subtree(cell, port, payload, length); return true;
-    case TYPE_ASSIGN: return assign(cell, port, payload, length);
-    default: neighbour(cell, port, payload, length); return true;
+        case TYPE_EXPLORED:
+            explored(cell, port, payload, length);
+            return true;
+        case TYPE_SUBTREE:
+            subtree(cell, port, payload, length);
+            return true;
+        case TYPE_ASSIGN:
+            return assign(cell, port, payload, length);
+        default:
+            neighbour(cell, port, payload, length);
+            return true;
     }
 }
 
@@ -141,8 +148,8 @@ static void tell_of_booted(skin_cell* cell) {
     skin_tree* tree = &cell->tree;
     for (int p = 0; p < cell->link.ports && tree->number != 0 && tree->booted != 0; ++p) {
         const skincal_wire_Restarted restarted = {.port = (uint32_t)p};
-        if ((tree->booted & bit(p)) && skin_say(cell, bit(tree->parent), TYPE_RESTARTED, SKIN_UP,
-                                                skincal_wire_Restarted_fields, &restarted))
+        if ((tree->booted & bit(p)) &&
+            skin_say(cell, bit(tree->parent), TYPE_RESTARTED, SKIN_UP, skincal_wire_Restarted_fields, &restarted))
             tree->booted &= (uint8_t)~bit(p);
     }
 }

@@ -17,6 +17,9 @@ constexpr SkinClient::Time kPatience = 250ms;
 constexpr SkinClient::Time kTally = 300ms;  // and for each cell:
 constexpr SkinClient::Time kTallyEach = 40us;
 constexpr SkinClient::Time kMarkEvery = 10s;
+/// Of silence, until the first cell is asked for a sign of life, and until it counts as gone.
+constexpr SkinClient::Time kQuiet = 250ms;
+constexpr SkinClient::Time kSilent = 900ms;
 constexpr int kExplorations = 3;
 constexpr int kTallies = 4;
 constexpr int kContradictions = 4;
@@ -106,7 +109,10 @@ void SkinClient::explore(Time now) {
 }
 
 void SkinClient::receive(std::span<const std::uint8_t> bytes, Time now) {
+    const std::uint64_t before = link_.received().frames;
     link_.receive(bytes, now, [&](const FrameHeader& header, std::string_view payload) { take(header, payload, now); });
+    if (link_.received().frames != before)
+        heard_ = now;
 }
 
 void SkinClient::take(const FrameHeader& header, std::string_view payload, Time now) {
@@ -135,6 +141,7 @@ void SkinClient::takeLocal(const FrameHeader& header, std::string_view payload, 
                 return;
             }
             phase_ = Phase::Open;
+            heard_ = now;
             epoch_ = header.epoch;  // of an earlier session: ours are newer
             listener_.onOpened(hello->name());
             return;
@@ -409,7 +416,23 @@ void SkinClient::takeTouches(std::string_view payload, Time when) {
     listener_.onTouch(touches_, when);
 }
 
+void SkinClient::listen(Time now) {
+    if (phase_ == Phase::Closed || phase_ == Phase::Greeting)
+        return;
+    if (now >= heard_ + kSilent) {
+        fail(SkinFault::Silenced);
+        heard_ = now;
+    } else if (now >= std::max(heard_, pinged_) + kQuiet) {
+        pinged_ = now;
+        wire::Hello hello;  // without a question: its acknowledgement will do
+        hello.set_oldest_version(FrameHeader::kVersion);
+        hello.set_newest_version(FrameHeader::kVersion);
+        sendLocal(FrameType::Hello, hello.SerializeAsString());
+    }
+}
+
 void SkinClient::poll(Time now, std::vector<std::uint8_t>& bytes) {
+    listen(now);
     switch (phase_) {
         case Phase::Greeting:
             if (now >= due_) {
@@ -454,6 +477,8 @@ std::optional<SkinClient::Time> SkinClient::wakeAt() const {
     const auto consider = [&](Time when) { wake = wake ? std::min(*wake, when) : when; };
     if (phase_ == Phase::Greeting || phase_ == Phase::Flooding)
         consider(due_);
+    if (phase_ != Phase::Closed && phase_ != Phase::Greeting)
+        consider(std::min(std::max(heard_, pinged_) + kQuiet, heard_ + kSilent));
     if (phase_ == Phase::Describing && info_)
         consider(info_->wakeAt());
     if (phase_ == Phase::Explored) {

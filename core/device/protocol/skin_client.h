@@ -83,6 +83,7 @@ class SkinClient {
     void tallied(std::string_view payload, Time now);
     void showAgain(Time now);
     void pollCells(int subject, std::optional<CellPoll>& poll, Time now);
+    void listen(Time now);
     void fail(SkinFault fault);
 
     void sendLocal(FrameType type, std::string payload = {});
@@ -98,6 +99,9 @@ class SkinClient {
     int attempts_ = 0;
     std::uint8_t epoch_ = 0;
     std::size_t cells_ = 0;
+
+    Time heard_{};   ///< when a frame came last
+    Time pinged_{};
 
     SkinNetwork network_;
     std::vector<bool> described_;  ///< by number

@@ -124,14 +124,18 @@ TEST(Explore, GoesAroundDeadCellsAndCutWires) {
     }
 }
 
-TEST(Explore, ACellThatComesBackIsNoticedAndFoundAgain) {
+TEST(Explore, CellsThatComeBackAreNoticedAndFoundAgain) {
     const Skin skin = arm();
     VirtualLine line(skin, placeForComputer(skin).value(), {}, 3);
     ASSERT_TRUE(line.connect());
-    line.network.restart(4);
-    EXPECT_TRUE(line.runUntil([&] { return line.notes.restarts > 0; }, 1s));
-    ASSERT_TRUE(line.explore());
-    EXPECT_EQ(linksOf(*line.notes.network, line.network), linksOf(skin));
+    for (std::size_t cell = 0; cell < 40; cell += 2) {
+        line.notes.restarts = 0;
+        line.network.restart(cell);
+        ASSERT_TRUE(line.runUntil([&] { return line.notes.restarts > 0; }, 1s)) << cell;
+        ASSERT_TRUE(line.explore()) << cell << " at " << line.network.now().count() << " us, fault "
+                                    << static_cast<int>(line.notes.fault.value_or(SkinFault{-1}));
+        ASSERT_EQ(linksOf(*line.notes.network, line.network), linksOf(skin)) << cell;
+    }
 }
 
 TEST(Explore, MayBeAskedForAgainAndAgain) {
@@ -174,6 +178,17 @@ TEST(Explore, NobodyThereIsSaid) {
     line.network.kill(0);
     EXPECT_FALSE(line.connect());
     EXPECT_EQ(line.notes.fault, SkinFault::NoAnswer);
+}
+
+TEST(Explore, ASkinThatFallsSilentIsNoticedWithinASecond) {
+    const Skin skin = gridSkin(4, 4);
+    VirtualLine line(skin, skin.hostLinks.front(), {}, 1);
+    ASSERT_TRUE(line.connect());
+    line.runFor(20s);
+    EXPECT_FALSE(line.notes.fault) << "it is there, though nobody asks it anything";
+    line.network.cut(0, skin.hostLinks.front().port);
+    EXPECT_TRUE(line.runUntil([&] { return line.notes.fault.has_value(); }, 1s));
+    EXPECT_EQ(line.notes.fault, SkinFault::Silenced);
 }
 
 TEST(Explore, AnotherDeviceOrSpeedIsSaid) {

@@ -1,0 +1,107 @@
+#include "core/device/line_address.h"
+
+#include <QFileInfo>
+
+#include "core/device/program_line.h"
+#include "core/device/serial_line.h"
+#include "core/device/socket_line.h"
+
+namespace skincal {
+namespace {
+
+std::optional<int> positive(QStringView text, int most) {
+    bool fine = false;
+    const int value = text.toInt(&fine);
+    return fine && value > 0 && value <= most ? std::optional(value) : std::nullopt;
+}
+
+tl::expected<LineAddress, QString> parseTcp(const QString& text) {
+    const QString rest = text.mid(6);
+    const qsizetype colon = rest.lastIndexOf(u':');
+    const auto port = colon > 0 ? positive(QStringView(rest).mid(colon + 1), 65535) : std::nullopt;
+    if (!port)
+        return tl::unexpected(QStringLiteral("\"%1\" is no address: tcp://host:port was expected").arg(text));
+    QString host = rest.left(colon);
+    if (host.startsWith(u'[') && host.endsWith(u']'))
+        host = host.mid(1, host.size() - 2);  // IPv6
+    return LineAddress{LineAddress::Kind::Tcp, host, *port, text};
+}
+
+tl::expected<LineAddress, QString> parseSerial(const QString& text) {
+    const qsizetype at = text.lastIndexOf(u'@');
+    if (at < 0)
+        return LineAddress{LineAddress::Kind::Serial, text, LineAddress::kBaud, text};
+    const auto baud = positive(QStringView(text).mid(at + 1), 50'000'000);
+    if (!baud || at == 0)
+        return tl::unexpected(QStringLiteral("\"%1\" is no port: port@baud was expected").arg(text));
+    return LineAddress{LineAddress::Kind::Serial, text.left(at), *baud, text};
+}
+
+QString permissionHelp(const LineAddress& address) {
+    const QString group = QFileInfo(SerialLine::fullPath(address.target)).group();
+    return QStringLiteral("you may not open %1: \"sudo usermod -aG %2 $USER\", then log out and in again")
+        .arg(address.target, group.isEmpty() ? QStringLiteral("dialout") : group);
+}
+
+}  // namespace
+
+tl::expected<LineAddress, QString> parseLineAddress(const QString& text) {
+    const QString trimmed = text.trimmed();
+    if (trimmed.isEmpty())
+        return tl::unexpected(QStringLiteral("a serial port, tcp://host:port or exec:command was expected"));
+    if (trimmed.startsWith(QLatin1String("tcp://")))
+        return parseTcp(trimmed);
+    if (trimmed.startsWith(QLatin1String("exec:"))) {
+        const QString command = trimmed.mid(5).trimmed();
+        if (command.isEmpty())
+            return tl::unexpected(QStringLiteral("\"%1\" names no program").arg(trimmed));
+        return LineAddress{LineAddress::Kind::Program, command, 0, trimmed};
+    }
+    return parseSerial(trimmed);
+}
+
+std::unique_ptr<Line> makeLine(const LineAddress& address) {
+    switch (address.kind) {
+        case LineAddress::Kind::Tcp:
+            return std::make_unique<SocketLine>(address.target, static_cast<quint16>(address.number));
+        case LineAddress::Kind::Program:
+            return std::make_unique<ProgramLine>(address.target);
+        case LineAddress::Kind::Serial:
+            break;
+    }
+    return std::make_unique<SerialLine>(address.target, address.number);
+}
+
+QString lineHelp(LineFault fault, const LineAddress& address, const QString& detail) {
+    switch (fault) {
+        case LineFault::NoSuchPort:
+            return QStringLiteral("there is no port %1: is the adapter plugged in?").arg(address.target);
+        case LineFault::NoPermission:
+            return permissionHelp(address);
+        case LineFault::InUse:
+            return QStringLiteral("another program has %1 open: \"fuser -v %2\" names it")
+                .arg(address.target, SerialLine::fullPath(address.target));
+        case LineFault::Refused:
+            return QStringLiteral("nobody listens at %1: is the gateway running?").arg(address.text);
+        case LineFault::UnknownHost:
+            return QStringLiteral("there is no host \"%1\"").arg(address.target);
+        case LineFault::NoProgram:
+            return QStringLiteral("\"%1\" could not be started: %2").arg(address.target, detail);
+        case LineFault::Ended:
+            switch (address.kind) {
+                case LineAddress::Kind::Serial:
+                    return QStringLiteral("%1 was unplugged").arg(address.target);
+                case LineAddress::Kind::Tcp:
+                    return QStringLiteral("%1 hung up").arg(address.text);
+                case LineAddress::Kind::Program:
+                    return QStringLiteral("\"%1\" ended%2")
+                        .arg(address.target, detail.isEmpty() ? QString() : QStringLiteral(": ") + detail);
+            }
+            break;
+        case LineFault::Other:
+            break;
+    }
+    return QStringLiteral("%1: %2").arg(address.text, detail);
+}
+
+}  // namespace skincal

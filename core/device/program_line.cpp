@@ -1,0 +1,70 @@
+#include "core/device/program_line.h"
+
+#include <QTimer>
+#include <cstdio>
+
+namespace skincal {
+
+ProgramLine::ProgramLine(QString command, QObject* parent) : Line(parent), command_(std::move(command)) {}
+
+ProgramLine::~ProgramLine() {
+    close();
+}
+
+void ProgramLine::open() {
+    close();
+    lastError_.clear();
+    process_ = std::make_unique<QProcess>();
+    QProcess* process = process_.get();
+    connect(process, &QProcess::started, this, [this] { emit opened(); });
+    connect(process, &QProcess::readyReadStandardOutput, this,
+            [this] { emit received(process_->readAllStandardOutput()); });
+    connect(process, &QProcess::readyReadStandardError, this, [this] {
+        const QByteArray text = process_->readAllStandardError();
+        std::fwrite(text.constData(), 1, static_cast<std::size_t>(text.size()), stderr);
+        const QList<QByteArray> lines = text.trimmed().split('\n');
+        lastError_ = lines.back();
+    });
+    connect(process, &QProcess::errorOccurred, this, [this](QProcess::ProcessError error) {
+        if (error == QProcess::FailedToStart)
+            QTimer::singleShot(0, process_.get(), [this] { fail(LineFault::NoProgram, process_->errorString()); });
+    });
+    connect(process, &QProcess::finished, this, [this](int code) {
+        const QString said = QString::fromUtf8(lastError_);
+        const QString detail = said.isEmpty() && code != 0 ? QStringLiteral("exit code %1").arg(code) : said;
+        QTimer::singleShot(0, process_.get(), [this, detail] { fail(LineFault::Ended, detail); });
+    });
+    QStringList words = QProcess::splitCommand(command_);
+    const QString program = words.isEmpty() ? QString() : words.takeFirst();
+    process->start(program, words);
+}
+
+void ProgramLine::close() {
+    if (!process_)
+        return;
+    QProcess* process = process_.release();
+    process->disconnect(this);
+    if (process->state() == QProcess::NotRunning) {
+        process->deleteLater();
+        return;
+    }
+    process->closeWriteChannel();
+    process->terminate();
+    if (!process->waitForFinished(1000)) {
+        process->kill();
+        process->waitForFinished(1000);
+    }
+    process->deleteLater();
+}
+
+void ProgramLine::write(const QByteArray& bytes) {
+    if (process_ && process_->state() == QProcess::Running)
+        process_->write(bytes);
+}
+
+void ProgramLine::fail(LineFault fault, const QString& detail) {
+    close();
+    emit failed(fault, detail);
+}
+
+}  // namespace skincal

@@ -1,0 +1,250 @@
+#include "core/device/skin_worker.h"
+
+#include <QRandomGenerator>
+#include <algorithm>
+
+namespace skincal {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kFlush = 20ms;
+constexpr auto kRestPeriod = 100ms;
+/// Of what the line carries, for streams: the rest is for lights and questions.
+constexpr double kStreamShare = 0.5;
+constexpr double kRestBytes = 66;  ///< of a Rest frame, with its share of an acknowledgement
+
+QString wordsFor(SkinFault fault, const LineAddress& address) {
+    switch (fault) {
+        case SkinFault::NoAnswer:
+            return QStringLiteral("nothing answers at %1: is the skin powered, and is this its port?")
+                .arg(address.text);
+        case SkinFault::Garbled:
+            return address.kind == LineAddress::Kind::Serial
+                       ? QStringLiteral(
+                             "what comes from %1 can't be read at %2 baud: another speed (%1@115200), or no skin")
+                             .arg(address.target)
+                             .arg(address.number)
+                       : QStringLiteral("what comes from %1 is not the skin protocol").arg(address.text);
+        case SkinFault::OtherVersion:
+            return QStringLiteral(
+                       "the skin at %1 speaks another version of the protocol: update its firmware, or this "
+                       "program")
+                .arg(address.text);
+        case SkinFault::Stalled:
+            return QStringLiteral("the skin at %1 answers, but its cells don't").arg(address.text);
+        case SkinFault::Silenced:
+            return QStringLiteral("the skin at %1 no longer answers").arg(address.text);
+    }
+    return {};
+}
+
+}  // namespace
+
+SkinWorker::SkinWorker(LineAddress address) : address_(std::move(address)), timer_(this), flush_(this), silence_(this) {
+    timer_.setSingleShot(true);
+    timer_.setTimerType(Qt::PreciseTimer);
+    connect(&timer_, &QTimer::timeout, this, &SkinWorker::pump);
+    flush_.setInterval(kFlush);
+    connect(&flush_, &QTimer::timeout, this, &SkinWorker::flushStreams);
+}
+
+SkinWorker::~SkinWorker() {
+    close();
+}
+
+SkinWorker::Time SkinWorker::now() {
+    return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
+}
+
+void SkinWorker::open() {
+    close();
+    line_ = makeLine(address_);
+    connect(line_.get(), &Line::opened, this, [this] {
+        ReliableLinkOptions options;
+        options.bytesPerSecond = line_->bytesPerSecond();
+        // Three of the longest frames and what an adapter and a busy computer hold back.
+        options.timeout = Time(static_cast<Time::rep>(3e6 * kMaxEncodedFrame / options.bytesPerSecond)) + 20ms;
+        SkinListener& listener = *this;
+        client_ = std::make_unique<SkinClient>(listener, options, QRandomGenerator::global()->generate());
+        client_->open(now());
+        pump();
+    });
+    connect(line_.get(), &Line::received, this, [this](const QByteArray& bytes) {
+        if (!client_)
+            return;
+        const auto* raw = reinterpret_cast<const std::uint8_t*>(bytes.constData());
+        client_->receive({raw, static_cast<std::size_t>(bytes.size())}, now());
+        pump();
+    });
+    connect(line_.get(), &Line::failed, this, &SkinWorker::lose);
+    line_->open();
+}
+
+void SkinWorker::close() {
+    if (client_ && line_) {
+        client_->light({}, 0, now());
+        std::vector<std::uint8_t> bytes;
+        client_->poll(now(), bytes);
+        line_->write({reinterpret_cast<const char*>(bytes.data()), static_cast<qsizetype>(bytes.size())});
+    }
+    timer_.stop();
+    flush_.stop();
+    client_.reset();
+    if (line_) {
+        line_->disconnect(this);
+        line_->close();
+        line_.release()->deleteLater();
+    }
+    streamsRest_ = false;
+    streamsTouch_ = false;
+    exploring_ = false;
+}
+
+void SkinWorker::lose(LineFault fault, const QString& detail) {
+    fail(lineHelp(fault, address_, detail));
+}
+
+void SkinWorker::fail(const QString& why) {
+    close();
+    emit failed(why);
+}
+
+void SkinWorker::pump() {
+    if (!client_ || !line_)
+        return;
+    std::vector<std::uint8_t> bytes;
+    client_->poll(now(), bytes);
+    if (!client_)  // a fault closed it
+        return;
+    if (!bytes.empty())
+        line_->write({reinterpret_cast<const char*>(bytes.data()), static_cast<qsizetype>(bytes.size())});
+    if (const auto wake = client_->wakeAt()) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::max(*wake - now(), Time(0)));
+        timer_.start(left);
+    } else {
+        timer_.stop();
+    }
+}
+
+void SkinWorker::explore() {
+    if (!client_)
+        return;
+    exploring_ = true;
+    client_->explore(now());
+    pump();
+}
+
+void SkinWorker::prepare(const std::vector<std::vector<LitCell>>& sets) {
+    if (client_)
+        client_->prepare(sets);
+}
+
+void SkinWorker::light(const std::vector<LitCell>& lit, quint64 token) {
+    if (!client_)
+        return;
+    client_->light(lit, token, now());
+    pump();
+}
+
+std::chrono::milliseconds SkinWorker::restPeriod() const {
+    const double busy = static_cast<double>(client_->cells()) * kRestBytes / (line_->bytesPerSecond() * kStreamShare);
+    return std::max(std::chrono::milliseconds(kRestPeriod), std::chrono::milliseconds(static_cast<int>(1000 * busy)));
+}
+
+void SkinWorker::streamRest(bool on) {
+    streamsRest_ = on;
+    if (!client_)
+        return;
+    client_->streamRest(on ? restPeriod() : 0ms);
+    if (on)
+        flush_.start();
+    pump();
+}
+
+void SkinWorker::streamTouch(bool on) {
+    streamsTouch_ = on;
+    if (!client_)
+        return;
+    // 22 bytes around the samples of up to six cells.
+    const double busy = static_cast<double>(client_->cells()) * 26 / (line_->bytesPerSecond() * kStreamShare);
+    const auto period = std::max(10ms, std::chrono::milliseconds(static_cast<int>(1000 * busy)));
+    client_->streamTouch(on ? period : 0ms);
+    if (on)
+        flush_.start();
+    pump();
+}
+
+void SkinWorker::flushStreams() {
+    if (!client_)
+        return;
+    if (!readings_.empty() && now() >= readingsDue_) {
+        readingsDue_ = now() + restPeriod();
+        std::vector<RestReading> readings;
+        for (const auto& [cell, reading] : readings_)
+            readings.push_back(reading);
+        readings_.clear();
+        emit accelerationCame(readings, readingsAt_.count());
+    }
+    if (!touches_.empty())
+        emit touchCame(std::exchange(touches_, {}), touchesAt_.count());
+    if (!streamsRest_ && !streamsTouch_)
+        flush_.stop();
+}
+
+void SkinWorker::onOpened(const std::string& firmware) {
+    emit opened(QString::fromStdString(firmware));
+}
+
+void SkinWorker::onFault(SkinFault fault) {
+    // From the event loop: the client is in the middle of something.
+    QTimer::singleShot(0, this, [this, fault] {
+        if (client_)
+            fail(wordsFor(fault, address_));
+    });
+}
+
+void SkinWorker::onCounted(std::size_t /*cells*/) {}
+
+void SkinWorker::onCell(const NetworkCell& cell) {
+    emit cellFound(cell);
+}
+
+void SkinWorker::onExplored(const SkinNetwork& network) {
+    exploring_ = false;
+    emit explored(network);
+    QTimer::singleShot(0, this, [this] {
+        if (streamsRest_)
+            streamRest(true);
+        if (streamsTouch_)
+            streamTouch(true);
+    });
+}
+
+void SkinWorker::onRestarted() {
+    emit numbersLost();
+    QTimer::singleShot(0, this, &SkinWorker::explore);
+}
+
+void SkinWorker::onShown(std::uint64_t token) {
+    emit shown(token);
+}
+
+void SkinWorker::onNotShown(std::uint64_t /*token*/, std::size_t /*shown*/) {
+    // Whoever waits for the light has a timeout. Cells that don't answer any more have to be looked for.
+    QTimer::singleShot(0, this, &SkinWorker::explore);
+}
+
+void SkinWorker::onAcceleration(const RestReading& reading, Time time) {
+    readings_[reading.cell] = reading;
+    readingsAt_ = time;
+}
+
+void SkinWorker::onRest(std::span<const RestReading> /*readings*/, std::span<const CellNumber> /*missing*/) {}
+
+void SkinWorker::onTouch(std::span<const CellTouch> touches, Time time) {
+    touches_.insert(touches_.end(), touches.begin(), touches.end());
+    touchesAt_ = time;
+}
+
+}  // namespace skincal

@@ -112,7 +112,7 @@ void ProtocolSkin::adopt(const SkinNetwork& network) {
     if (std::exchange(asked_, false) || changed)
         emit explored(*skin);
     else
-        light(lit_);
+        tellLight();
 }
 
 std::vector<LitCell> ProtocolSkin::cellsOf(const std::vector<LitModule>& lit) const {
@@ -141,9 +141,14 @@ void ProtocolSkin::prepare(const std::vector<std::vector<LitModule>>& sets) {
 std::uint64_t ProtocolSkin::light(const std::vector<LitModule>& lit) {
     lit_ = lit;
     ++token_;
-    if (state_ == State::Open)
-        post(worker_, [worker = worker_, cells = cellsOf(lit), token = token_] { worker->light(cells, token); });
+    tellLight();
     return token_;
+}
+
+/// While cells have no numbers it waits for adopt().
+void ProtocolSkin::tellLight() {
+    if (state_ == State::Open && !cellOf_.empty())
+        post(worker_, [worker = worker_, cells = cellsOf(lit_), token = token_] { worker->light(cells, token); });
 }
 
 void ProtocolSkin::streamAcceleration(bool on) {

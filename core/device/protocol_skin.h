@@ -41,6 +41,7 @@ class ProtocolSkin : public SkinDevice {
     enum class State { Closed, Opening, Open };
 
     void adopt(const SkinNetwork& network);
+    void tellLight();
     [[nodiscard]] std::vector<LitCell> cellsOf(const std::vector<LitModule>& lit) const;
     void emitAcceleration(const std::vector<RestReading>& readings, qint64 time_us);
     void emitTouch(const std::vector<CellTouch>& touches, qint64 time_us);

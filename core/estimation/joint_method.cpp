@@ -199,6 +199,15 @@ tl::expected<void, CalibrationError> chooseSpots(BodySolution& solution, const R
     }
     if (isChanged)
         noteWeights(solution);
+    const auto& spots = solution.estimate.spots;
+    const auto taken = std::count_if(spots.begin(), spots.end(), [](const SpotVerdict& v) { return v.pixel; });
+    auto& condition = solution.estimate.condition;
+    condition.erase("spots taken");
+    condition.erase("spots open");
+    if (!spots.empty()) {
+        condition["spots taken"] = static_cast<double>(taken);
+        condition["spots open"] = static_cast<double>(spots.size()) - static_cast<double>(taken);
+    }
     return {};
 }
 

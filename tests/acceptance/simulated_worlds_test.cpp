@@ -104,13 +104,7 @@ TEST(SimulatedWorlds, TheBodyTellsLedsFromTheirReflections) {
     std::size_t chosen = 0;
     std::size_t doubtful = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        Scenario scenario = *findScenario("reflection");
-        scenario.disturbances.reflection = 0.8;
-        for (PatchPlan& patch : scenario.patches)
-            patch.modules = 19;
-        scenario.views.distance = 0.36;
-        scenario.views.count = 5;
-        const World world = buildWorld(scenario, seed);
+        const World world = buildWorld(*findScenario("mirror"), seed);
         const Recording recording = recordingOf(world);
         const auto measurements = measure(recording, framesOf(world, recording));
         ASSERT_TRUE(measurements);
@@ -157,8 +151,7 @@ TEST(SimulatedWorlds, TheBodyTellsLedsFromTheirReflections) {
 }
 
 TEST(SimulatedWorlds, TheOperatorsRejectionLeavesNoSpotToChoose) {
-    Scenario scenario = *findScenario("reflection");
-    scenario.disturbances.reflection = 0.8;
+    Scenario scenario = *findScenario("mirror");
     scenario.views.count = 1;
     const World world = buildWorld(scenario, 1);
     Recording recording = recordingOf(world);

@@ -226,6 +226,8 @@ TEST(SpotSettlement, TheBodyIsThatOfSureDetections) {
         }
     }
     EXPECT_EQ(told, doubts);
+    EXPECT_EQ(body.quality.condition.at("spots taken"), static_cast<double>(doubts));
+    EXPECT_EQ(body.quality.condition.at("spots open"), 0);
 }
 
 /// One doubtful module in a world that is otherwise well known.

@@ -26,6 +26,34 @@ bool isSingular(const SparseCholesky& factor, const Eigen::SparseMatrix<double>&
 
 }  // namespace
 
+SmallMatrix forecastCovariance(const Linearisation& linear, const LinearisedBlock& block,
+                               const SelectedInverse& inverse) {
+    // A measurement depends on some sixteen unknowns.
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 24>;
+    using RowIterator = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
+    std::array<Eigen::Index, 24> columns{};
+    Eigen::Index count = 0;
+    for (RowIterator it(linear.J, block.row); it; ++it)
+        columns.at(static_cast<std::size_t>(count++)) = it.col();
+    Rows J = Rows::Zero(block.size, count);
+    for (Eigen::Index r = 0; r < block.size; ++r) {
+        // Ceres writes all columns of a block in every row, in the same order.
+        Eigen::Index c = 0;
+        for (RowIterator it(linear.J, block.row + r); it; ++it)
+            J(r, c++) = it.value();
+    }
+    Rows JC = Rows::Zero(block.size, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        for (Eigen::Index j = 0; j <= i; ++j) {
+            const double C = inverse(columns.at(static_cast<std::size_t>(i)), columns.at(static_cast<std::size_t>(j)));
+            JC.col(i) += C * J.col(j);
+            if (i != j)
+                JC.col(j) += C * J.col(i);
+        }
+    }
+    return JC * J.transpose();
+}
+
 std::optional<std::array<Eigen::Index, 6>> Linearisation::columnsOf(const PoseBlocks& pose) const {
     const auto q = column.find(pose.q.data());
     const auto t = column.find(pose.t.data());

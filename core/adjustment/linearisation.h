@@ -33,6 +33,13 @@ struct Linearisation {
     [[nodiscard]] std::optional<std::array<Eigen::Index, 6>> columnsOf(const PoseBlocks& pose) const;
 };
 
+/// Small and dense: a measurement has at most three numbers.
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+
+/// J C J^T of one measurement, C = H^-1: covariance of what the solution forecasts for it, in its own variances.
+[[nodiscard]] SmallMatrix forecastCovariance(const Linearisation& linear, const LinearisedBlock& block,
+                                             const SelectedInverse& inverse);
+
 /// The quaternion manifold's tangent is half the rotation vector, applied from the left: q' = exp(delta) q.
 inline constexpr double tangentFactor(Eigen::Index axis) {
     return axis % 6 < 3 ? 2.0 : 1.0;

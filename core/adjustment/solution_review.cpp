@@ -11,36 +11,6 @@
 namespace skincal {
 namespace {
 
-/// Small and dense: a measurement has at most three numbers and depends on some sixteen.
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 24>;
-using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
-
-/// J C J^T of one measurement.
-Small forecastCovariance(const Linearisation& linear, const LinearisedBlock& block, const SelectedInverse& inverse) {
-    using RowIterator = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
-    std::array<Eigen::Index, 24> columns{};
-    Eigen::Index count = 0;
-    for (RowIterator it(linear.J, block.row); it; ++it)
-        columns.at(static_cast<std::size_t>(count++)) = it.col();
-    Rows J = Rows::Zero(block.size, count);
-    for (Eigen::Index r = 0; r < block.size; ++r) {
-        // Ceres writes all columns of a block in every row, in the same order.
-        Eigen::Index c = 0;
-        for (RowIterator it(linear.J, block.row + r); it; ++it)
-            J(r, c++) = it.value();
-    }
-    Rows JC = Rows::Zero(block.size, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        for (Eigen::Index j = 0; j <= i; ++j) {
-            const double C = inverse(columns.at(static_cast<std::size_t>(i)), columns.at(static_cast<std::size_t>(j)));
-            JC.col(i) += C * J.col(j);
-            if (i != j)
-                JC.col(j) += C * J.col(i);
-        }
-    }
-    return JC * J.transpose();
-}
-
 MeasurementReview reviewOf(const Linearisation& linear, const LinearisedBlock& block, const SelectedInverse& inverse) {
     const Eigen::Vector3d padded = [&] {
         Eigen::Vector3d r = Eigen::Vector3d::Zero();
@@ -49,15 +19,15 @@ MeasurementReview reviewOf(const Linearisation& linear, const LinearisedBlock& b
     }();
     const auto r = padded.head(block.size);
     const double w = block.weight;
-    const Small P = forecastCovariance(linear, block, inverse);
-    const Small I = Small::Identity(block.size, block.size);
+    const SmallMatrix P = forecastCovariance(linear, block, inverse);
+    const SmallMatrix I = SmallMatrix::Identity(block.size, block.size);
     MeasurementReview review;
     review.squares = w * r.squaredNorm();
     review.redundancy = std::max(0.0, w * (static_cast<double>(block.size) - w * P.trace()));
     // What nothing else checks can't disagree; the least redundancy keeps the quotient finite.
     constexpr double kUnchecked = 1e-6;
-    const Small own = I - w * P + kUnchecked * I;
-    const Small all = I + (1 - w) * P;
+    const SmallMatrix own = I - w * P + kUnchecked * I;
+    const SmallMatrix all = I + (1 - w) * P;
     review.disagreement = std::max(0.0, r.dot(all.partialPivLu().solve(own.partialPivLu().solve(Eigen::VectorXd(r)))));
     return review;
 }

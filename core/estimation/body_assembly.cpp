@@ -104,6 +104,13 @@ void addViews(const Measurements& m, const AdjustmentInput& input, const BodySta
         view.status = estimate.viewStatus[v];
         body.views.push_back(std::move(view));
     }
+    std::map<std::pair<std::size_t, ModuleId>, const SpotVerdict*> spots;
+    for (const SpotVerdict& verdict : estimate.spots)
+        spots[{verdict.view, m.skin.modules[verdict.module].id}] = &verdict;
+    const auto spotOf = [&](std::size_t view, ModuleId id) {
+        const auto found = spots.find({view, id});
+        return found == spots.end() ? nullptr : found->second;
+    };
     for (std::size_t i = 0; i < input.pixels.size(); ++i) {
         const PixelObservation& o = input.pixels[i];
         BodyObservation out;
@@ -119,6 +126,8 @@ void addViews(const Measurements& m, const AdjustmentInput& input, const BodySta
                          : !estimate.T_r_u[o.module] ? "its module has no pose"
                                                      : "its module lies behind the camera";
         } else {
+            if (const SpotVerdict* spot = spotOf(o.view, out.module))
+                out.reason = spot->reason;
             body.modules[o.module].seen = true;
             squares[o.view] += out.residual->squaredNorm();
             ++counts[o.view];
@@ -129,7 +138,11 @@ void addViews(const Measurements& m, const AdjustmentInput& input, const BodySta
         for (const Undetected& missed : m.views[v].undetected) {
             const auto verdict = missed.verdict == DetectionVerdict::Ambiguous ? ObservationVerdict::Ambiguous
                                                                                : ObservationVerdict::NotFound;
-            body.views[v].observations.push_back({missed.module, std::nullopt, std::nullopt, verdict, missed.reason});
+            const SpotVerdict* spot = spotOf(v, missed.module);
+            if (spot != nullptr && spot->pixel)
+                continue;  // its detection is there
+            body.views[v].observations.push_back(
+                {missed.module, std::nullopt, std::nullopt, verdict, spot != nullptr ? spot->reason : missed.reason});
         }
         if (counts[v] > 0)
             body.views[v].residual_rms_px = rootMean(squares[v], counts[v]);

@@ -11,6 +11,15 @@
 
 namespace skincal {
 
+/// What became of a module for which several spots of a view blink (Undetected::spots).
+struct SpotVerdict {
+    std::size_t view = 0;
+    std::size_t module = 0;
+    std::optional<std::size_t> pixel{};  ///< entry of AdjustmentInput::pixels; nothing where none was taken
+    std::optional<Vector2d> spot{};      ///< which of them that is
+    std::string reason;                  ///< of either
+};
+
 /// What a method hands over once its estimation is done; assembleBody makes the body model of it.
 struct BodyEstimate {
     std::string method;
@@ -29,6 +38,7 @@ struct BodyEstimate {
     std::vector<std::string> rejectedReason;  ///< likewise
     /// Likewise: why a detection does not count wherever it lies, being part of a finding; empty where it does.
     std::vector<std::string> setAside;
+    std::vector<SpotVerdict> spots;          ///< where several spots blink a module's word, taken or not
     std::vector<std::string> moduleTrouble;  ///< per module: why it has no pose though its patch has; empty where none
     std::vector<std::size_t> notHeld;        ///< modules that nothing measured holds
     std::vector<std::string> linkTrouble;    ///< per link of the graph: why a neighbour does not count as one

@@ -50,7 +50,7 @@ struct BodyObservation {
     std::optional<Vector2d> pixel;
     std::optional<Vector2d> residual;  ///< measured minus predicted, px
     ObservationVerdict verdict = ObservationVerdict::Used;
-    std::string reason;
+    std::string reason;  ///< of any verdict but used, and where one of several spots was taken
 };
 
 struct BodyView {

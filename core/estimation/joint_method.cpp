@@ -126,8 +126,8 @@ tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements
 }  // namespace
 
 bool JointMethodOptions::validate() const {
-    return start.validate() && refinement.validate() && suspects.validate() && misalignmentSigma >= 0 &&
-           maxTakeOuts >= 0 && maxTrials >= 0;
+    return start.validate() && refinement.validate() && suspects.validate() && spots.validate() &&
+           misalignmentSigma >= 0 && maxTakeOuts >= 0 && maxTrials >= 0;
 }
 
 tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& measurements, const GravityTable& gravity,
@@ -162,10 +162,53 @@ tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& me
         if (!better)
             break;
     }
+    if (const auto chosen = chooseSpots(*best, options.refinement, options.spots, context); !chosen)
+        return tl::unexpected(chosen.error());
     noteMovedPatches(*best, history);
     nameMisportedLinks(*best, options.suspects.portsMeet);
     noteNoiseFindings(*best);
     return best;
+}
+
+tl::expected<void, CalibrationError> chooseSpots(BodySolution& solution, const RefinementOptions& refinement,
+                                                 const SpotOptions& options, const RunContext& context) {
+    // Without covariances nothing tells how well an LED's place is known.
+    if (!solution.anyViewPlaced() || solution.estimate.covariances.empty())
+        return {};
+    bool isChanged = false;
+    for (int round = 0; round < options.maxRounds; ++round) {
+        StageClock clock("which of several spots");
+        const auto taken = settleSpots(solution, options, context);
+        if (!taken)
+            return tl::unexpected(taken.error());
+        if (*taken == 0)
+            break;
+        isChanged = true;
+        // Against its own noise a spot may be far from where the body had a module that nothing else showed: the body
+        // goes there before anything is judged.
+        const auto took = adjustSolution(solution, usedMeasurements(solution), context);
+        if (!took)
+            return tl::unexpected(took.error());
+        solution.estimate.stages.push_back(clock.stop(*took));
+        const auto review = refineJointly(solution, refinement, context);
+        if (!review)
+            return tl::unexpected(review.error());
+        if (*review)
+            solution.estimate.covariances = (*review)->covariances;
+        dropRejectedSpots(solution);
+    }
+    if (isChanged)
+        noteWeights(solution);
+    const auto& spots = solution.estimate.spots;
+    const auto taken = std::count_if(spots.begin(), spots.end(), [](const SpotVerdict& v) { return v.pixel; });
+    auto& condition = solution.estimate.condition;
+    condition.erase("spots taken");
+    condition.erase("spots open");
+    if (!spots.empty()) {
+        condition["spots taken"] = static_cast<double>(taken);
+        condition["spots open"] = static_cast<double>(spots.size()) - static_cast<double>(taken);
+    }
+    return {};
 }
 
 tl::expected<BodyModel, CalibrationError> calibrateJoint(const Measurements& measurements,

@@ -3,6 +3,7 @@
 #include <tl/expected.hpp>
 
 #include "core/estimation/joint_refinement.h"
+#include "core/estimation/spot_settlement.h"
 #include "core/estimation/sturdy_method.h"
 #include "core/estimation/suspects.h"
 
@@ -12,6 +13,7 @@ struct JointMethodOptions {
     SturdyMethodOptions start;
     RefinementOptions refinement;
     SuspectOptions suspects;
+    SpotOptions spots;
     /// How far accelerometers sit askew on their boards, rad about each axis, where the maker says so; 0 estimates
     /// none. It stands as given: gravity can't tell it from how a module is turned, links and pictures hardly.
     double misalignmentSigma = 0;
@@ -23,7 +25,8 @@ struct JointMethodOptions {
 
 /// The joint estimate from the data alone: started by the sturdy method, refined over everything at once with weights
 /// from the residuals; what everything else contradicts is taken out and named; and where a patch does not fit its
-/// pictures, other explanations are tried and kept where they cost less (see alternatives).
+/// pictures, other explanations are tried and kept where they cost less (see alternatives). Last, where several spots
+/// blink a module's word, the one that lies where the body has its LED is taken, if there is one (see settleSpots).
 /// Each module has its covariance relative to the first placed view, which is the body frame.
 /// Fails with Cancelled or NotConverged. Where the data do not fix all unknowns the sturdy method's weights stand and
 /// there are no covariances.
@@ -42,6 +45,13 @@ struct JointMethodOptions {
                                                                          const GravityTable& gravity,
                                                                          const JointMethodOptions& options = {},
                                                                          const RunContext& context = {});
+
+/// Takes the spots that the solution decides on and solves again with them, until there are no more or as often as
+/// `options.spots` allows. Fails with Cancelled or NotConverged.
+[[nodiscard]] tl::expected<void, CalibrationError> chooseSpots(BodySolution& solution,
+                                                               const RefinementOptions& refinement,
+                                                               const SpotOptions& options,
+                                                               const RunContext& context = {});
 
 /// solveJointly as a body model.
 [[nodiscard]] tl::expected<BodyModel, CalibrationError> calibrateJoint(const Measurements& measurements,

@@ -58,6 +58,7 @@ void replaceDetections(BodySolution& next, const Measurements& measurements) {
             setAside[{next.input.pixels[i].view, next.input.pixels[i].module}] = next.estimate.setAside[i];
     }
     next.input.pixels = flattenDetections(measurements);
+    restoreSpots(next);
     next.estimate.setAside.assign(next.input.pixels.size(), {});
     next.estimate.rejected.assign(next.input.pixels.size(), false);
     next.estimate.rejectedReason.assign(next.input.pixels.size(), {});
@@ -157,6 +158,9 @@ tl::expected<BodySolution, CalibrationError> updateJointly(const BodySolution& l
         return tl::unexpected(review.error());
     if (*review)
         next.estimate.covariances = (*review)->covariances;
+    dropRejectedSpots(next);
+    if (const auto chosen = chooseSpots(next, once, options.spots, context); !chosen)
+        return tl::unexpected(chosen.error());
     noteNoiseFindings(next);
     return next;
 }

@@ -18,6 +18,8 @@ namespace skincal {
 struct RecordedView {
     std::string name;
     std::vector<FrameInfo> frames;  ///< win over detections where there are any
+    /// Sure ones only: a file has no place for several spots of one module (Undetected::spots). Where frames are kept
+    /// they are found again; where only detections are, such a module counts as not found.
     std::vector<LedDetection> detections;
 };
 

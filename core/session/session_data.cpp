@@ -38,16 +38,25 @@ std::vector<GravityReading> countingReadings(const Measured& measured, const Dec
     return readings;
 }
 
-/// A rejected detection counts as not found.
+/// A rejected detection counts as not found, and so do several spots of which none was sure.
 ViewDetections withoutRejected(ViewDetections view, const Decisions& decisions) {
-    std::erase_if(view.found, [&](const LedDetection& detection) {
-        const auto decision = decisions.detections.find({view.name, detection.module});
+    const auto whyRejected = [&](ModuleId module) -> std::optional<std::string> {
+        const auto decision = decisions.detections.find({view.name, module});
         if (decision == decisions.detections.end() || decision->second.verdict != "rejected")
-            return false;
+            return std::nullopt;
         const std::string& why = decision->second.reason;
-        view.undetected.push_back({detection.module, DetectionVerdict::NotFound,
-                                   "rejected by the operator" + (why.empty() ? "" : ": " + why)});
-        return true;
+        return "rejected by the operator" + (why.empty() ? "" : ": " + why);
+    };
+    for (Undetected& undetected : view.undetected) {
+        const auto why = undetected.spots.empty() ? std::nullopt : whyRejected(undetected.module);
+        if (why)
+            undetected = {undetected.module, DetectionVerdict::NotFound, *why};
+    }
+    std::erase_if(view.found, [&](const LedDetection& detection) {
+        const auto why = whyRejected(detection.module);
+        if (why)
+            view.undetected.push_back({detection.module, DetectionVerdict::NotFound, *why});
+        return why.has_value();
     });
     return view;
 }

@@ -208,6 +208,16 @@ std::vector<Scenario> makeScenarios() {
     coded.disturbances.reflection = 0.3;
     all.push_back(coded);
     coded.disturbances = {};
+    Scenario mirror = coded;
+    mirror.name = "mirror";
+    mirror.description =
+        "coded pictures of two patches of 19 above a surface that mirrors most of their LEDs as bright";
+    for (PatchPlan& patch : mirror.patches)
+        patch.modules = 19;
+    mirror.views.distance = 0.36;
+    mirror.views.count = 5;
+    mirror.disturbances.reflection = 0.8;
+    all.push_back(mirror);
     coded.name = "flicker";
     coded.description = "coded pictures under a lamp that flickers with the mains";
     coded.disturbances.flicker = 25;

@@ -20,8 +20,11 @@ struct PaperStudyOptions {
 
 /// What one method reached over all trials.
 struct MethodOutcome {
-    /// Trials in which it gave a result. Ours gives none where a picture of a flat patch could be of its mirror pose as
-    /// well: it says so, and the paper's does not.
+    /// Trials in which it gave a result: the "n of N" of the table; mean and rms are over these alone. Ours gives none
+    /// where a picture of a flat patch could be of its mirror pose as well: it says so, and the paper's does not. Such
+    /// a trial still counts as an answer where both sides agree, that is where the quantity in every other pose that
+    /// is nearly as likely (BodySolution::rivals) differs from the given one by less than the rms error that the
+    /// Cramer-Rao bound of this world allows. So n differs between quantities of the same worlds.
     int solved = 0;
     std::optional<double> mean;  ///< of the quantity
     std::optional<double> rms;   ///< of its error

@@ -37,6 +37,8 @@ class Verdicts {
         if (known.reason.empty() || better)
             known = {{}, verdict, std::move(reason)};
     }
+    // Nothing says more than several finds.
+    void replace(std::size_t module, Undetected with) { reasons_[module] = std::move(with); }
     [[nodiscard]] Undetected take(std::size_t module, ModuleId id) {
         Undetected result = std::move(reasons_[module]);
         result.module = id;
@@ -121,19 +123,41 @@ std::vector<Sighting> fitMatches(const std::vector<Match>& matches, const Decode
     return sightings;
 }
 
-// What the pixel says of a module whose spots are known, brightest first; the sharpest of the finds of one spot counts.
-tl::expected<SpotFit, std::string> chooseSpot(std::span<const Sighting> spots, const DecoderOptions& options) {
-    SpotFit best = spots.front().fit;
-    for (const Sighting& other : spots.subspan(1)) {
-        const double distance = (other.fit.centre - spots.front().fit.centre).norm();
-        if (distance <= options.sameSpot_px) {
-            if (other.fit.sigma_px < best.sigma_px)
-                best = other.fit;
-        } else if (other.fit.flux() * options.reflectionRatio > spots.front().fit.flux()) {
-            return tl::unexpected(fmt::format("two spots {:.0f} px apart blink its word", distance));
-        }
+// The spots that may be a module's LED, brightest first; of several finds of one spot the sharpest counts.
+std::vector<SpotFit> distinctSpots(std::span<const Sighting> finds, const DecoderOptions& options) {
+    struct Spot {
+        Vector2d place;
+        SpotFit best;
+    };
+    std::vector<Spot> spots;
+    const double faintest = finds.front().fit.flux() / options.reflectionRatio;
+    for (const Sighting& find : finds) {
+        const auto same = std::find_if(spots.begin(), spots.end(), [&](const Spot& spot) {
+            return (find.fit.centre - spot.place).norm() <= options.sameSpot_px;
+        });
+        if (same == spots.end() && (spots.empty() || find.fit.flux() > faintest))
+            spots.push_back({find.fit.centre, find.fit});
+        else if (same != spots.end() && find.fit.sigma_px < same->best.sigma_px)
+            same->best = find.fit;
     }
+    std::vector<SpotFit> best;
+    for (const Spot& spot : spots)
+        best.push_back(spot.best);
     return best;
+}
+
+// Why none of several spots was taken, with the spots for whoever knows more than the picture.
+Undetected undecided(const std::vector<SpotFit>& spots, const DecoderOptions& options) {
+    Undetected result{{}, DetectionVerdict::Ambiguous, {}};
+    result.reason = spots.size() == 2 ? fmt::format("two spots {:.0f} px apart blink its word",
+                                                    (spots[1].centre - spots[0].centre).norm())
+                                      : fmt::format("{} spots blink its word", spots.size());
+    // One that is left out might be the LED itself.
+    if (spots.size() > static_cast<std::size_t>(options.maxSpots))
+        return result;
+    for (const SpotFit& spot : spots)
+        result.spots.push_back({spot.centre, spot.sigma_px, std::min(1.0, spot.flux() / spots.front().flux())});
+    return result;
 }
 
 }  // namespace
@@ -141,7 +165,7 @@ tl::expected<SpotFit, std::string> chooseSpot(std::span<const Sighting> spots, c
 bool DecoderOptions::validate() const {
     return candidates.validate() && words.validate() && fit.validate() && windowRadius >= 3 && windowRadius <= 30 &&
            maxShift_px > 0 && sameSpot_px > 0 && maxStrayShare > 0 && reflectionRatio >= 1 &&
-           candidatesPerModule >= 1 && extraCandidates >= 0;
+           candidatesPerModule >= 1 && extraCandidates >= 0 && maxSpots >= 2;
 }
 
 cv::Mat toGrey(const cv::Mat& frame) {
@@ -235,12 +259,12 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
                 u, DetectionVerdict::Ambiguous,
                 fmt::format("lit in the same frames as {} other modules", sharing[codebook.representative[u]] - 1));
         } else if (spots.first != spots.second) {
-            const auto fit = chooseSpot({spots.first, spots.second}, options);
-            if (fit) {
-                result.found.push_back({modules[u], fit->centre, fit->sigma_px});
+            const std::vector<SpotFit> distinct = distinctSpots({spots.first, spots.second}, options);
+            if (distinct.size() == 1) {
+                result.found.push_back({modules[u], distinct[0].centre, distinct[0].sigma_px});
                 continue;
             }
-            verdicts.note(u, DetectionVerdict::Ambiguous, fit.error());
+            verdicts.replace(u, undecided(distinct, options));
         }
         result.undetected.push_back(verdicts.take(u, modules[u]));
     }

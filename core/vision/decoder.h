@@ -23,6 +23,7 @@ struct DecoderOptions {
     double maxStrayShare = 0.02;   ///< of a clipped spot's light that may follow another word
     double sameSpot_px = 2;        ///< two finds of one module nearer than this are one
     double reflectionRatio = 2.5;  ///< flux ratio from which the weaker of two spots is a reflection
+    int maxSpots = 4;              ///< of one module that are handed on; where there are more, none is
     int candidatesPerModule = 8;   ///< limits the candidates to this times the modules …
     int extraCandidates = 500;     ///< … plus this
 
@@ -37,7 +38,8 @@ struct DecoderOptions {
 /// Every module is either in `found` or in `undetected` with the reason:
 ///   NotFound   never or always lit; no spot blinks its word; its spot has not the shape of an LED
 ///   Ambiguous  another module has the same word; another word fits its spot as well; two spots of similar strength
-///              blink its word (a reflection less than `reflectionRatio` weaker)
+///              blink its word (a reflection less than `reflectionRatio` weaker): these are handed on as
+///              Undetected::spots, at most `maxSpots` of them; where there are more, none is
 /// A spot shared by two LEDs is separated where both centres can be fitted, else neither is reported.
 /// @param modules  all modules of the skin; a frame that lights any other is an error
 /// @param frames   in the order in which they were taken

@@ -19,11 +19,21 @@ struct LedDetection {
 /// What became of a module in a view's picture.
 enum class DetectionVerdict { Found, NotFound, Ambiguous };
 
+/// One of several spots that blink the word of one module: the LED or a reflection of it.
+struct SpotChoice {
+    Vector2d pixel = Vector2d::Zero();  ///< raw (distorted)
+    double sigma_px = 0.1;              ///< per axis
+    double strength = 1;                ///< its light over that of the brightest of them, 0 … 1
+};
+
 /// A module that the decoder did not accept, and why ("two spots blink its word", "no spot above the noise", …).
 struct Undetected {
     ModuleId module;
     DetectionVerdict verdict = DetectionVerdict::NotFound;
     std::string reason;
+    /// Where several spots blink its word alike: all of them, brightest first, at least two. The picture can't tell
+    /// which is the LED; what is known of the body may (see settleSpots). Empty where there is nothing to choose from.
+    std::vector<SpotChoice> spots{};
 };
 
 /// Everything the picture of one view yields.

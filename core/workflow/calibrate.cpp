@@ -29,17 +29,20 @@ tl::expected<ViewDetections, CalibrateError> detect(const Recording& recording, 
     return *found;
 }
 
-/// The operator's word: a rejected detection counts as not found.
+/// The operator's word: a rejected detection counts as not found, and so do several spots of which none was sure.
 void applyDecisions(const Recording& recording, ViewDetections& view) {
     for (const Decision& decision : recording.decisions) {
         if (decision.view != view.name || decision.verdict != "rejected")
             continue;
         const auto removed =
             std::erase_if(view.found, [&](const LedDetection& d) { return d.module == decision.module; });
+        const std::string why = "rejected by the operator" + (decision.reason.empty() ? "" : ": " + decision.reason);
         if (removed > 0)
-            view.undetected.push_back(
-                {decision.module, DetectionVerdict::NotFound,
-                 "rejected by the operator" + (decision.reason.empty() ? "" : ": " + decision.reason)});
+            view.undetected.push_back({decision.module, DetectionVerdict::NotFound, why});
+        for (Undetected& undetected : view.undetected) {
+            if (undetected.module == decision.module && !undetected.spots.empty())
+                undetected = {decision.module, DetectionVerdict::NotFound, why};
+        }
     }
 }
 

@@ -42,6 +42,29 @@ class CommandLineTest : public testing::Test {
     test::TemporaryDirectory directory_;
 };
 
+TEST_F(CommandLineTest, SaysWhichOfSeveralSpotsWasTaken) {
+    const Outcome simulated = run("simulate mirror -o " + at("w.skinrec") + " --truth " + at("truth.json"));
+    ASSERT_EQ(simulated.code, 0) << simulated.error;
+    const Outcome calibrated = run("calibrate --json " + at("w.skinrec") + " -o " + at("b.body.json"));
+    ASSERT_EQ(calibrated.code, 0) << calibrated.error;
+    const auto body = readBody(at("b.body.json"));
+    ASSERT_TRUE(body);
+    std::size_t taken = 0;
+    for (const BodyView& view : body->views) {
+        for (const BodyObservation& o : view.observations) {
+            if (o.verdict != ObservationVerdict::Used || o.reason.empty())
+                continue;
+            EXPECT_THAT(o.reason, HasSubstr("this one lies where the body has it"));
+            ++taken;
+        }
+    }
+    EXPECT_GT(taken, 50U);
+    EXPECT_EQ(body->quality.condition.at("spots taken"), static_cast<double>(taken));
+    const Outcome compared = run("compare --json " + at("b.body.json") + " " + at("truth.json"));
+    ASSERT_EQ(compared.code, 0) << compared.error;
+    EXPECT_LT(nlohmann::json::parse(compared.output)["position_rms"].get<double>(), 1e-3);
+}
+
 TEST_F(CommandLineTest, FromSimulationToEveryExport) {
     const Outcome simulated = run("simulate plane --seed 3 -o " + at("w.skinrec") + " --truth " + at("truth.json"));
     ASSERT_EQ(simulated.code, 0) << simulated.error;

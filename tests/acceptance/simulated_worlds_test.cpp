@@ -23,6 +23,20 @@ std::optional<BodyComparison> errorOf(const World& world, const BodyModel& body)
     return difference ? std::optional(*difference) : std::nullopt;
 }
 
+std::size_t used(const BodyModel& body) {
+    std::size_t count = 0;
+    for (const BodyView& view : body.views)
+        count += static_cast<std::size_t>(
+            std::count_if(view.observations.begin(), view.observations.end(),
+                          [](const BodyObservation& o) { return o.verdict == ObservationVerdict::Used; }));
+    return count;
+}
+
+std::size_t seen(const BodyModel& body) {
+    return static_cast<std::size_t>(
+        std::count_if(body.modules.begin(), body.modules.end(), [](const BodyModule& m) { return m.seen; }));
+}
+
 class SimulatedWorldsTable : public testing::TestWithParam<std::string> {};
 
 TEST_P(SimulatedWorldsTable, AreCalibrated) {
@@ -82,6 +96,79 @@ TEST(SimulatedWorlds, TheOperatorsRejectionsCount) {
     ASSERT_TRUE(measurements);
     EXPECT_EQ(measurements->views[0].found.size() + 1, recording.views[0].detections.size());
     EXPECT_THAT(measurements->views[0].undetected.back().reason, testing::HasSubstr("a lamp"));
+}
+
+// A table that returns most of the light shows every LED above it twice: from the pictures alone the decoder can't tell
+// which is which, the body can.
+TEST(SimulatedWorlds, TheBodyTellsLedsFromTheirReflections) {
+    std::size_t chosen = 0;
+    std::size_t doubtful = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        const World world = buildWorld(*findScenario("mirror"), seed);
+        const Recording recording = recordingOf(world);
+        const auto measurements = measure(recording, framesOf(world, recording));
+        ASSERT_TRUE(measurements);
+        Measurements without = *measurements;
+        for (ViewDetections& view : without.views) {
+            for (Undetected& undetected : view.undetected)
+                undetected.spots.clear();
+        }
+        const auto body = calibrateJoint(*measurements);
+        const auto bodyWithout = calibrateJoint(without);
+        ASSERT_TRUE(body) << body.error().message();
+        ASSERT_TRUE(bodyWithout);
+        const auto index = world.skin.indexById();
+        std::size_t here = 0;
+        for (std::size_t v = 0; v < body->views.size(); ++v) {
+            for (const Undetected& undetected : measurements->views[v].undetected)
+                doubtful += undetected.spots.empty() ? 0 : 1;
+            for (const BodyObservation& o : body->views[v].observations) {
+                if (o.verdict != ObservationVerdict::Used || o.reason.empty())
+                    continue;
+                ++here;
+                const std::size_t u = index.at(o.module);
+                const auto real = world.scenario.camera.project(world.T_r_v[v].inverse() *
+                                                                (world.T_r_u[u] * world.skin.templateOf(u).led));
+                ASSERT_TRUE(real);
+                EXPECT_LT((*o.pixel - *real).norm(), 1) << "seed " << seed << ", module " << o.module.value;
+            }
+        }
+        chosen += here;
+        EXPECT_EQ(used(*body), used(*bodyWithout) + here);
+        EXPECT_GE(seen(*body), seen(*bodyWithout));
+        EXPECT_GE(body->quality.modulesPlaced, bodyWithout->quality.modulesPlaced);
+        const auto error = errorOf(world, *body);
+        const auto errorWithout = errorOf(world, *bodyWithout);
+        ASSERT_TRUE(error);
+        EXPECT_LT(error->positionRms, 1.5e-3) << "seed " << seed;
+        EXPECT_LT(error->rotationRms, 1.5 * kDegree) << "seed " << seed;
+        if (errorWithout && errorWithout->compared == error->compared) {
+            EXPECT_LT(error->positionRms, 1.1 * errorWithout->positionRms + 0.05e-3) << "seed " << seed;
+        }
+    }
+    EXPECT_GT(doubtful, 20U);
+    EXPECT_GT(chosen * 10, doubtful * 7) << chosen << " of " << doubtful;
+}
+
+TEST(SimulatedWorlds, TheOperatorsRejectionLeavesNoSpotToChoose) {
+    Scenario scenario = *findScenario("mirror");
+    scenario.views.count = 1;
+    const World world = buildWorld(scenario, 1);
+    Recording recording = recordingOf(world);
+    const auto rejected = [&](const Undetected& u) { return u.module == recording.decisions.front().module; };
+    const auto before = measure(recording, framesOf(world, recording));
+    ASSERT_TRUE(before);
+    const auto several = std::find_if(before->views[0].undetected.begin(), before->views[0].undetected.end(),
+                                      [](const Undetected& u) { return !u.spots.empty(); });
+    ASSERT_NE(several, before->views[0].undetected.end());
+    recording.decisions.push_back({"view0", several->module, "rejected", "a table"});
+    const auto after = measure(recording, framesOf(world, recording));
+    ASSERT_TRUE(after);
+    ASSERT_EQ(after->views[0].undetected.size(), before->views[0].undetected.size());
+    const auto now = std::find_if(after->views[0].undetected.begin(), after->views[0].undetected.end(), rejected);
+    ASSERT_NE(now, after->views[0].undetected.end());
+    EXPECT_TRUE(now->spots.empty());
+    EXPECT_EQ(now->reason, "rejected by the operator: a table");
 }
 
 // Somebody who walks through may hide LEDs; what is found all the same is where it is.

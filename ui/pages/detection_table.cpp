@@ -162,7 +162,8 @@ void DetectionTable::refresh() {
             if (!row)
                 return false;
             const DetectionRow& detection = presenter_.detections().rows()[static_cast<std::size_t>(*row)];
-            return detection.pixel.has_value() && detection.isOperatorsWord == isRejected;
+            // What was rejected need not have a place of its own: the picture left several.
+            return isRejected ? detection.isOperatorsWord : detection.pixel && !detection.isOperatorsWord;
         });
     };
     accept_->setEnabled(any(true));

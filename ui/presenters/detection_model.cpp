@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace skincal {
 namespace {
@@ -15,6 +16,7 @@ State stateOf(DetectionVerdict verdict) {
 /// What the decoder made of a view.
 std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Decisions& decisions) {
     std::map<ModuleId, DetectionRow> rows;
+    std::set<ModuleId> several;  // spots to choose from
     for (const LedDetection& found : view.decoded.found)
         rows[found.module] = {found.module, State::Used, found.pixel, found.sigma_px, std::nullopt, false, {}};
     for (const Undetected& undetected : view.decoded.undetected) {
@@ -22,10 +24,13 @@ std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Deci
         row.module = undetected.module;
         row.state = stateOf(undetected.verdict);
         row.reason = QString::fromStdString(undetected.reason);
+        if (!undetected.spots.empty())
+            several.insert(undetected.module);
     }
     for (auto& [module, row] : rows) {
         const auto decision = decisions.detections.find({view.name, module});
-        if (decision == decisions.detections.end() || decision->second.verdict != "rejected" || !row.pixel)
+        if (decision == decisions.detections.end() || decision->second.verdict != "rejected" ||
+            (!row.pixel && !several.contains(module)))
             continue;
         row.state = State::Rejected;
         row.isOperatorsWord = true;
@@ -34,7 +39,18 @@ std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Deci
     return rows;
 }
 
-void addResiduals(const BodyView& view, std::map<ModuleId, DetectionRow>& rows) {
+/// How well the centre of one of several spots is known.
+std::optional<double> sigmaOfSpot(const ScannedView& view, ModuleId module, const Vector2d& pixel) {
+    for (const Undetected& undetected : view.decoded.undetected) {
+        for (const SpotChoice& spot : undetected.spots) {
+            if (undetected.module == module && spot.pixel == pixel)
+                return spot.sigma_px;
+        }
+    }
+    return std::nullopt;
+}
+
+void addResiduals(const BodyView& view, const ScannedView& scanned, std::map<ModuleId, DetectionRow>& rows) {
     for (const BodyObservation& observation : view.observations) {
         const auto found = rows.find(observation.module);
         if (found == rows.end() || found->second.isOperatorsWord)
@@ -42,6 +58,14 @@ void addResiduals(const BodyView& view, std::map<ModuleId, DetectionRow>& rows) 
         DetectionRow& row = found->second;
         if (observation.residual)
             row.residual_px = observation.residual->norm();
+        if (row.state == State::Ambiguous)
+            row.reason = QString::fromStdString(observation.reason);
+        // The body told which of several spots it is.
+        if (row.state == State::Ambiguous && observation.verdict == ObservationVerdict::Used) {
+            row.state = State::Used;
+            row.pixel = observation.pixel;
+            row.sigma_px = sigmaOfSpot(scanned, observation.module, *observation.pixel);
+        }
         if (observation.verdict == ObservationVerdict::Rejected) {
             row.state = State::SetAside;
             row.reason = QString::fromStdString(observation.reason);
@@ -178,7 +202,7 @@ void DetectionModel::refresh() {
         if (session.solution()) {
             for (const BodyView& solved : session.solution()->body.views) {
                 if (solved.name == view_)
-                    addResiduals(solved, rows);
+                    addResiduals(solved, *view, rows);
             }
         }
     }

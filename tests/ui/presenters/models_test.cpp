@@ -7,6 +7,7 @@
 #include <QSignalSpy>
 
 #include "core/formats/body_json.h"
+#include "core/workflow/simulated_recording.h"
 #include "tests/ui/presenters/desk.h"
 #include "tests/unit/formats/temporary_directory.h"
 
@@ -125,6 +126,53 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
     EXPECT_EQ(desk.connection.links().rowCount() + desk.pose.poses().rowCount(), 0);
     EXPECT_EQ(desk.scan.detections().rowCount(), 0);
     EXPECT_EQ(desk.exporter.body(), nullptr);
+}
+
+// What the picture left open and the body decided is a detection like any other, with its reason; it can be rejected
+// and accepted again.
+TEST(DetectionModel, TellsWhichOfSeveralSpotsTheBodyTook) {
+    Desk desk;
+    Scenario scenario = *findScenario("coded");
+    scenario.views.scan = ScanKind::Detections;
+    OpenedRecording opened = openedFrom(recordingOf(buildWorld(scenario, 1)));
+    ViewDetections& decoded = opened.measured.views.front().decoded;
+    const auto doubt = [&](const Vector2d& offset, bool isLedSeen) {
+        const LedDetection led = decoded.found.back();
+        decoded.found.pop_back();
+        Undetected several{led.module, DetectionVerdict::Ambiguous, "two spots blink its word"};
+        several.spots = {{led.pixel + Vector2d(50, 20), led.sigma_px, 1},
+                         {led.pixel + offset, led.sigma_px, isLedSeen ? 0.9 : 0.8}};
+        decoded.undetected.push_back(several);
+        return led;
+    };
+    const LedDetection told = doubt({0, 0}, true);
+    const LedDetection open = doubt({-60, 40}, false);
+    desk.session().load(opened);
+    desk.scan.detections().setView(decoded.name);
+    const auto rowOf = [&](const LedDetection& led) {
+        return desk.scan.detections()
+            .rows()[static_cast<std::size_t>(desk.scan.detections().rowOf(led.module).value())];
+    };
+    EXPECT_EQ(rowOf(told).state, DetectionRow::State::Ambiguous) << "nothing is known of the body yet";
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_EQ(rowOf(told).state, DetectionRow::State::Used);
+    EXPECT_EQ(rowOf(told).pixel, told.pixel);
+    EXPECT_EQ(rowOf(told).sigma_px, told.sigma_px);
+    EXPECT_LT(rowOf(told).residual_px.value_or(99), 1);
+    EXPECT_TRUE(rowOf(told).reason.contains(QStringLiteral("this one lies where the body has it")));
+    EXPECT_EQ(rowOf(open).state, DetectionRow::State::Ambiguous);
+    EXPECT_FALSE(rowOf(open).pixel);
+    EXPECT_TRUE(rowOf(open).reason.contains(QStringLiteral("none lies where the body has it")));
+
+    desk.scan.detections().reject({told.module}, "a reflection");
+    EXPECT_EQ(rowOf(told).state, DetectionRow::State::Rejected);
+    EXPECT_TRUE(rowOf(told).isOperatorsWord);
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_EQ(rowOf(told).state, DetectionRow::State::Rejected);
+    EXPECT_EQ(rowOf(told).reason, "a reflection");
+    desk.scan.detections().accept({told.module});
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_EQ(rowOf(told).state, DetectionRow::State::Used);
 }
 
 TEST(LinkModel, ShowsNoLinksOfAnOlderNetwork) {

@@ -92,6 +92,23 @@ TEST(SessionData, ARejectedDetectionCountsAsNotFoundAndSaysWhy) {
     EXPECT_EQ(counts.undetected.back().reason, "rejected by the operator: a lamp");
 }
 
+TEST(SessionData, SeveralSpotsOfARejectedModuleAreNoChoice) {
+    auto [measured, decisions] = smallRecording(2);
+    ScannedView& view = measured.views.front();
+    const LedDetection first = view.decoded.found.front();
+    view.decoded.found.erase(view.decoded.found.begin());
+    Undetected several{first.module, DetectionVerdict::Ambiguous, "two spots blink its word"};
+    several.spots = {{first.pixel, first.sigma_px, 1}, {first.pixel + Vector2d(50, 0), first.sigma_px, 0.8}};
+    view.decoded.undetected = {several};
+    const ViewDetections before = measurementsOf(measured, decisions).views.front();
+    EXPECT_EQ(before.undetected.back().spots.size(), 2U);
+    decisions.detections[{view.name, first.module}] = {view.name, first.module, "rejected", ""};
+    const ViewDetections after = measurementsOf(measured, decisions).views.front();
+    ASSERT_EQ(after.undetected.size(), before.undetected.size());
+    EXPECT_TRUE(after.undetected.back().spots.empty());
+    EXPECT_EQ(after.undetected.back().reason, "rejected by the operator");
+}
+
 TEST(SessionData, ALinkIsTheSameFromEitherEnd) {
     auto [measured, decisions] = smallRecording(3);
     for (const Link& link : measured.skin.links) {

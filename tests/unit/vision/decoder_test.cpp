@@ -190,6 +190,79 @@ TEST_P(AnyScheme, StrongReflectionIsNotDecided) {
     EXPECT_THAT(u->reason, HasSubstr("two spots"));
 }
 
+TEST_P(AnyScheme, HandsOnAllSpotsThatMayBeTheLed) {
+    for (std::uint64_t seed = 63; seed <= 68; ++seed) {
+        ScanPainter scan = scanOf(seed, 10);
+        std::erase_if(scan.leds, [](const PaintedLed& led) { return led.pixel.y() > 212; });
+        reframe(scan);
+        Random random(seed, "mirror");
+        const PaintedLed& led = scan.leds[2];
+        const std::size_t images = 1 + seed % 3;
+        for (std::size_t i = 0; i < images; ++i) {
+            PaintedLed mirrored = led;
+            mirrored.peak *= random.uniform(0.5, 1.9);
+            mirrored.pixel = Vector2d(60 + 60.0 * static_cast<double>(i), random.uniform(226, 230));
+            scan.mirrored.push_back(mirrored);
+        }
+        double brightest = led.peak;
+        for (const PaintedLed& mirrored : scan.mirrored)
+            brightest = std::max(brightest, mirrored.peak);
+        // One much fainter than the brightest is none of them.
+        std::vector<PaintedLed> spots = scan.mirrored;
+        spots.push_back(led);
+        std::vector<Vector2d> expected;
+        for (const PaintedLed& spot : spots) {
+            if (spot.peak * 2.2 > brightest)
+                expected.push_back(spot.pixel);
+        }
+        const ViewDetections view = decode(scan);
+        EXPECT_EQ(expectNoneWrong(scan, view), scan.leds.size() - 1) << "seed " << seed;
+        const Undetected* u = missing(view, led.module);
+        ASSERT_NE(u, nullptr);
+        EXPECT_EQ(u->verdict, DetectionVerdict::Ambiguous);
+        EXPECT_GE(u->spots.size(), 2U);
+        EXPECT_LE(u->spots.size(), images + 1);
+        for (const Vector2d& place : expected) {
+            const auto spot = std::find_if(u->spots.begin(), u->spots.end(), [&](const SpotChoice& choice) {
+                return (choice.pixel - place).norm() < std::max(0.1, 6 * choice.sigma_px);
+            });
+            EXPECT_NE(spot, u->spots.end()) << "seed " << seed << ", " << place.transpose();
+        }
+        EXPECT_EQ(u->spots.front().strength, 1);
+        for (std::size_t i = 1; i < u->spots.size(); ++i)
+            EXPECT_LE(u->spots[i].strength, u->spots[i - 1].strength + 0.2);
+        // What was found, was never found or has another reason leaves nothing to choose.
+        for (const Undetected& other : view.undetected)
+            EXPECT_EQ(other.spots.empty(), other.module != led.module);
+    }
+}
+
+TEST_P(AnyScheme, HandsOnNoSpotWhereThereAreTooMany) {
+    ScanPainter scan = scanOf(69, 10);
+    std::erase_if(scan.leds, [](const PaintedLed& led) { return led.pixel.y() > 212; });
+    reframe(scan);
+    for (int i = 0; i < 4; ++i) {
+        PaintedLed mirrored = scan.leds[1];
+        mirrored.pixel = Vector2d(40 + 50.0 * i, 228);
+        scan.mirrored.push_back(mirrored);
+    }
+    const Undetected* u = nullptr;
+    const ViewDetections many = decode(scan);
+    u = missing(many, scan.leds[1].module);
+    ASSERT_NE(u, nullptr);
+    EXPECT_EQ(u->verdict, DetectionVerdict::Ambiguous);
+    EXPECT_EQ(u->reason, "5 spots blink its word");
+    EXPECT_TRUE(u->spots.empty());
+    DecoderOptions options;
+    options.maxSpots = 5;
+    const ViewDetections all = decode(scan, options);
+    u = missing(all, scan.leds[1].module);
+    ASSERT_NE(u, nullptr);
+    EXPECT_EQ(u->spots.size(), 5U);
+    options.maxSpots = 1;
+    EXPECT_FALSE(options.validate());
+}
+
 TEST_P(AnyScheme, TwoLedsInOneSpotAreSeparatedOrRefused) {
     std::size_t found = 0;
     std::size_t all = 0;

@@ -9,6 +9,7 @@
 #include "core/rig/simulated_rig.h"
 #include "core/session/session_keeper.h"
 #include "ui/scene3d/scene_widget.h"
+#include "ui/window/camera_offers.h"
 #include "ui/window/file_actions.h"
 #include "ui/window/main_window.h"
 #include "ui/window/rig_offers.h"
@@ -30,6 +31,7 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
     SimulatedRig rig(*findScenario(options.scenario), kSeed);
     Workbench workbench;
     offerRig(workbench, rig);
+    const CameraOffers cameras(workbench, std::make_shared<CameraList>());
     MainWindow window(workbench);
     window.setDark(!options.light);
     window.show();

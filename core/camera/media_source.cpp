@@ -1,9 +1,10 @@
 #include "core/camera/media_source.h"
 
 #include <QFileInfo>
-#include <QMediaMetaData>
 #include <QMediaPlayer>
+#include <QVideoFrame>
 #include <QVideoSink>
+#include <algorithm>
 #include <stdexcept>
 
 #include "core/camera/camera_list.h"
@@ -41,6 +42,11 @@ MediaSource::MediaSource(QUrl url, FrameWatchdogOptions options, QObject* parent
     prepareMultimedia();
     // What was compressed may well repeat a picture to the last pixel.
     options_.mayStandStill = true;
+    if (!url_.isLocalFile()) {
+        // Networks pause.
+        options_.firstPicture = std::max(options_.firstPicture, FrameWatchdogOptions::Time(std::chrono::seconds(15)));
+        options_.nextPicture = std::max(options_.nextPicture, FrameWatchdogOptions::Time(std::chrono::seconds(5)));
+    }
 }
 
 MediaSource::~MediaSource() {
@@ -114,7 +120,8 @@ void MediaSource::close() {
 void MediaSource::accepted(const CameraFrame& frame) {
     if (format_.width == frame.image.cols && format_.height == frame.image.rows)
         return;
-    const double rate = player_->player.metaData().value(QMediaMetaData::VideoFrameRate).toDouble();
+    // The player's metadata have no rate with Qt 6.4.
+    const auto rate = static_cast<double>(player_->sink.videoFrame().surfaceFormat().frameRate());
     format_ = {frame.image.cols, frame.image.rows, rate};
     emit abilitiesChanged();
 }

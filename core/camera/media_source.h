@@ -12,7 +12,7 @@ namespace skincal {
 [[nodiscard]] std::optional<QUrl> videoUrl(const QString& typed);
 
 /// A video file or a stream through Qt Multimedia, at its own pace, from the beginning at every start. It fails where
-/// it can't be played and where it is over.
+/// it can't be played and where it is over. Streams may pause for five seconds.
 class MediaSource : public VideoSource {
     Q_OBJECT
   public:

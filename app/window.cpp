@@ -31,10 +31,11 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
     SimulatedRig rig(*findScenario(options.scenario), kSeed);
     Workbench workbench;
     offerRig(workbench, rig);
-    const CameraOffers cameras(workbench, std::make_shared<CameraList>());
     MainWindow window(workbench);
     window.setDark(!options.light);
     window.show();
+    // After the window is there: asking all cameras what they can do takes its time.
+    const CameraOffers cameras(workbench, std::make_shared<CameraList>());
     const QString config = QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation);
     window.files().keepRecentIn(QDir(config).filePath(QStringLiteral("window.ini")));
     const QString kept =

@@ -17,8 +17,8 @@ class CameraClock {
     using Time = std::chrono::microseconds;
 
     struct Stamp {
-        Time time{};                ///< on the computer's clock
-        std::uint64_t sequence = 0; ///< rises by the periods that passed since the picture before, at least by 1
+        Time time{};                 ///< on the computer's clock
+        std::uint64_t sequence = 0;  ///< rises by the periods that passed since the picture before, at least by 1
     };
 
     /// @param period  between two pictures; 0 where it is not known: then the sequence rises by 1 each time

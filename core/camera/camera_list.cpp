@@ -13,8 +13,8 @@ ListedCamera listed(const QCameraDevice& device) {
     camera.id = device.id().toStdString();
     camera.description = device.description().toStdString();
     for (const QCameraFormat& format : device.videoFormats())
-        camera.formats.push_back({format.resolution().width(), format.resolution().height(),
-                                  static_cast<double>(format.maxFrameRate())});
+        camera.formats.push_back(
+            {format.resolution().width(), format.resolution().height(), static_cast<double>(format.maxFrameRate())});
     camera.formats = withoutDoubles(std::move(camera.formats));
     return camera;
 }

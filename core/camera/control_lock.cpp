@@ -59,8 +59,8 @@ bool set(V4l2Device& device, std::uint32_t id, std::int32_t value) {
 std::int32_t within(const v4l2_queryctrl& range, double value) {
     const double step = std::max(range.step, 1);
     const double steps = std::round((value - range.minimum) / step);
-    return static_cast<std::int32_t>(
-        std::clamp(range.minimum + steps * step, static_cast<double>(range.minimum), static_cast<double>(range.maximum)));
+    return static_cast<std::int32_t>(std::clamp(range.minimum + steps * step, static_cast<double>(range.minimum),
+                                                static_cast<double>(range.maximum)));
 }
 
 class Locker {

@@ -16,11 +16,11 @@ struct FrameWatchdogOptions {
 
     int width = 0;  ///< px that every picture must have; 0 takes the first picture's
     int height = 0;
-    Time oldest = std::chrono::seconds(1);                ///< age at which a picture is stale
-    Time newest = std::chrono::milliseconds(50);          ///< how far its time may lie ahead of now
-    Time firstPicture = std::chrono::seconds(5);          ///< patience with a source that was just started
-    Time nextPicture = std::chrono::milliseconds(700);    ///< patience with one that runs
-    Time longestPause = std::chrono::milliseconds(250);   ///< between two checks that counts as waiting, see check()
+    Time oldest = std::chrono::seconds(1);               ///< age at which a picture is stale
+    Time newest = std::chrono::milliseconds(50);         ///< how far its time may lie ahead of now
+    Time firstPicture = std::chrono::seconds(5);         ///< patience with a source that was just started
+    Time nextPicture = std::chrono::milliseconds(700);   ///< patience with one that runs
+    Time longestPause = std::chrono::milliseconds(250);  ///< between two checks that counts as waiting, see check()
     /// Cameras have noise: two pictures that agree in every pixel are one. Videos may stand still.
     bool mayStandStill = false;
 

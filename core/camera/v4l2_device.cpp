@@ -70,8 +70,8 @@ bool givesPictures(V4l2Device& device, std::string& card) {
         return false;
     const char* name = reinterpret_cast<const char*>(capability.card);
     card.assign(name, std::find(name, name + sizeof(capability.card), '\0'));
-    const std::uint32_t can = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0U ? capability.device_caps
-                                                                                     : capability.capabilities;
+    const std::uint32_t can =
+        (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0U ? capability.device_caps : capability.capabilities;
     return (can & (V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE)) != 0U;
 }
 

@@ -52,10 +52,10 @@ cv::Mat pictureOf(const QImage& image) {
     if (image.isNull())
         return {};
     const QImage bgra = image.convertToFormat(QImage::Format_RGBX8888);
-    return pictureOf(PixelLayout::Rgba,
-                     {bgra.constBits(), static_cast<std::size_t>(bgra.bytesPerLine()) *
-                                            static_cast<std::size_t>(bgra.height())},
-                     bgra.width(), bgra.height(), bgra.bytesPerLine());
+    return pictureOf(
+        PixelLayout::Rgba,
+        {bgra.constBits(), static_cast<std::size_t>(bgra.bytesPerLine()) * static_cast<std::size_t>(bgra.height())},
+        bgra.width(), bgra.height(), bgra.bytesPerLine());
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ cv::Mat pictureOf(PixelLayout layout, std::span<const std::uint8_t> bytes, int w
         return {};
     const int type = CV_8UC(static_cast<int>(bytesPerPixel(layout)));
     // Only read from.
-    const cv::Mat pixels(height, width, type, const_cast<std::uint8_t*>(bytes.data()), static_cast<std::size_t>(stride));
+    const cv::Mat pixels(height, width, type, const_cast<std::uint8_t*>(bytes.data()),
+                         static_cast<std::size_t>(stride));
     switch (layout) {
         case PixelLayout::Luma:
             return pixels.clone();

@@ -60,7 +60,7 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     exposureText_->setMinimumWidth(64);
     top->addWidget(exposureText_);
     body().addLayout(top);
-    picture_->setPlaceholder(tr("The camera's picture appears here."));
+    showPlaceholder();
     body().addWidget(picture_, 1);
     auto* below = new QHBoxLayout;
     auto* left = new QVBoxLayout;
@@ -79,7 +79,6 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     makers_->setObjectName(QStringLiteral("makersIntrinsics"));
     makers_->setProperty("primary", true);
     makers_->setToolTip(tr("The simulated camera knows its own lens"));
-    makers_->setVisible(workbench.hands && workbench.hands->intrinsics);
     calibrate_->setObjectName(QStringLiteral("calibrateHere"));
     calibrate_->setToolTip(tr("Show a printed chessboard or ChArUco board to this camera and get its intrinsics"));
     buttons->addWidget(makers_);
@@ -118,6 +117,7 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     connect(&workbench, &Workbench::cameraOffersChanged, this, &CameraPage::listDevices);
     connect(&workbench, &Workbench::cameraChosen, this, [this] {
         connect(workbench_.camera(), &FrameSource::abilitiesChanged, this, &CameraPage::listFormats);
+        showPlaceholder();
         listFormats();
     });
     connect(&workbench.session(), &Session::decisionsChanged, this, &CameraPage::refresh);
@@ -125,7 +125,10 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
         if (isActive_)
             showPicture();
     });
-    connect(&scan, &ScanPresenter::cameraFailed, this, &CameraPage::refresh);
+    connect(&scan, &ScanPresenter::cameraFailed, this, [this](const QString& why) {
+        picture_->setPlaceholder(why);
+        refresh();
+    });
     listDevices();
 }
 
@@ -176,6 +179,10 @@ void CameraPage::listDevices() {
     devices_->setItemData(devices_->count() - 1, tr("Takes pictures from a video or a camera in the network"),
                           Qt::ToolTipRole);
     listFormats();
+}
+
+void CameraPage::showPlaceholder() {
+    picture_->setPlaceholder(tr("The camera's picture appears here."));
 }
 
 void CameraPage::chooseDevice(int offer) {
@@ -241,6 +248,7 @@ void CameraPage::showPicture() {
     picture_->setImage(toImage(scan_.picture()));
     if (scan_.picture().empty())
         return;
+    showNotes();
     const PictureFigures figures = figuresOf(scan_.picture());
     histogram_->setFigures(figures);
     figures_->setText(tr("Clipped: %1 % bright, %2 % dark.  Sharpness %3 (largest is sharpest)")
@@ -249,7 +257,7 @@ void CameraPage::showPicture() {
                           .arg(figures.sharpness, 0, 'f', 3));
 }
 
-void CameraPage::refresh() {
+void CameraPage::showNotes() {
     const FrameSource* source = workbench_.camera();
     QStringList notes;
     if (source != nullptr)
@@ -257,11 +265,20 @@ void CameraPage::refresh() {
     notes.removeAll(QString());
     controls_->setText(notes.join(QLatin1Char(' ')));
     controls_->setVisible(!notes.isEmpty());
+}
+
+void CameraPage::refresh() {
+    const FrameSource* source = workbench_.camera();
+    showNotes();
     formats_->setEnabled(formats_->count() > 0);
     exposureText_->setText(source != nullptr && source->exposure()
                                ? tr("%1 ms").arg(1e3 * *source->exposure(), 0, 'f', 1)
                                : tr("automatic"));
     const auto& camera = workbench_.session().decisions().camera;
+    // Those of a rig never go, and have no key.
+    const int chosen = workbench_.chosenCamera();
+    makers_->setVisible(workbench_.hands && workbench_.hands->intrinsics &&
+                        (chosen < 0 || workbench_.cameraOffers.at(static_cast<std::size_t>(chosen)).key.isEmpty()));
     makers_->setEnabled(!camera);
     if (!camera) {
         intrinsics_->setText(tr("<b>Intrinsics are not known yet.</b>"));

@@ -37,6 +37,8 @@ class CameraPage : public Page {
     void listFormats();
     void refresh();
     void showPicture();
+    void showPlaceholder();
+    void showNotes();
     void calibrateHere();
     void adopt(const CameraModel& camera, const QString& text);
 

@@ -34,7 +34,7 @@ QString reasonOf(ControlState::Outcome outcome) {
         case Outcome::Refused:
             return tr("the camera refuses");
         default:
-            return tr("there is no access to it");
+            return tr("its control cannot be reached");
     }
 }
 
@@ -74,19 +74,22 @@ QString cameraWords(const CameraFailure& failure) {
         case CameraTrouble::Unplugged:
             return tr("The camera was unplugged: plug it in again, and it goes on by itself.");
         case CameraTrouble::NoFirstPicture:
-            return tr("The camera gives no pictures: unplug it and plug it in again, into a port of the computer rather "
-                      "than a hub, or choose a smaller picture.");
+            return tr(
+                "The camera gives no pictures: unplug it and plug it in again, into a port of the computer rather "
+                "than a hub, or choose a smaller picture.");
         case CameraTrouble::Silent:
             return tr("The camera has stopped giving pictures: check its cable, or unplug it and plug it in again.");
         case CameraTrouble::Frozen:
-            return tr("The camera gives the same picture again and again: take off its lid or cover, or unplug it and "
-                      "plug it in again.");
+            return tr(
+                "The camera gives the same picture again and again: take off its lid or cover, or unplug it and "
+                "plug it in again.");
         case CameraTrouble::TestPicture:
             return tr("A test picture came in the place of the camera's: it is gone. Plug it in again.");
         case CameraTrouble::WrongSize:
             return tr("The camera gives pictures of another size than asked for: choose another resolution.");
         case CameraTrouble::Late:
-            return tr("The pictures come more than a second late: choose a smaller resolution, or close other programs.");
+            return tr(
+                "The pictures come more than a second late: choose a smaller resolution, or close other programs.");
         case CameraTrouble::Unsteady:
             return tr("The times of the camera's pictures do not rise: unplug it and plug it in again.");
         case CameraTrouble::Unreadable:

@@ -181,12 +181,13 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
     if (!cameraFailure_.isEmpty())
         problems.push_back({Severity::Error, Step::Camera, cameraFailure_, {}, {}});
     if (workbench_.camera() != nullptr && mayBrightnessChange(workbench_.camera()->controls()))
-        problems.push_back({Severity::Note,
-                            Step::Camera,
-                            tr("The camera may change its exposure in the midst of a scan: keep the light even, and scan "
-                               "a view again where few modules were found"),
-                            {},
-                            {}});
+        problems.push_back(
+            {Severity::Note,
+             Step::Camera,
+             tr("The camera may change its exposure in the midst of a scan: keep the light even, and scan "
+                "a view again where few modules were found"),
+             {},
+             {}});
     if (scan_.state().phase == ScanRun::Phase::Failed)
         problems.push_back({Severity::Error,
                             Step::Scan,

@@ -9,8 +9,8 @@
 namespace skincal {
 
 /// Keeps the webcams that are plugged in among the cameras that can be chosen: behind those of a rig, before videos.
-/// The chosen one stays in the list while it is unplugged. Cameras that this user may not open are listed, too: choosing
-/// one says what to do.
+/// The chosen one stays in the list while it is unplugged. Cameras that this user may not open are listed, too:
+/// choosing one says what to do.
 class CameraOffers : public QObject {
     Q_OBJECT
   public:

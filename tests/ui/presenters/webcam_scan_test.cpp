@@ -52,7 +52,8 @@ class WebcamScan : public testing::Test {
         if (!waitFor([&] { return listed() != nullptr; }))
             return false;
         auto offers = desk.workbench.cameraOffers;
-        offers.push_back({"webcam", "", [this, camera = *listed()] { return std::make_unique<WebcamSource>(list, camera); },
+        offers.push_back({"webcam", "",
+                          [this, camera = *listed()] { return std::make_unique<WebcamSource>(list, camera); },
                           "webcam"});
         desk.workbench.setCameraOffers(std::move(offers));
         desk.session().decide("intrinsics", [&](Decisions& decisions) { decisions.camera = lens; });

@@ -32,8 +32,8 @@ std::vector<Taken> takePictures(Random& random, std::size_t pictures) {
         const Time since = kPeriod * static_cast<int>(k);
         const Time delay{static_cast<long>(random.uniform(3e3, random.uniform() < 0.1 ? 200e3 : 20e3))};
         arrival = std::max(arrival + Time(1), Time(1'000'000) + since + delay);
-        taken.push_back({Time(1'000'000) + since, began + Time(std::lround(pace * static_cast<double>(since.count()))),
-                         arrival});
+        taken.push_back(
+            {Time(1'000'000) + since, began + Time(std::lround(pace * static_cast<double>(since.count()))), arrival});
     }
     return taken;
 }

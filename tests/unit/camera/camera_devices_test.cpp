@@ -28,19 +28,18 @@ TEST(Formats, TheUsualOneIsLargeAndSmooth) {
 }
 
 TEST(Cameras, ListedTwiceAreOne) {
-    const auto cameras =
-        withoutDoubles({camera("0", "A"), camera("1", "B"), camera("2", "A"), camera("3", "B")}, {});
+    const auto cameras = withoutDoubles({camera("0", "A"), camera("1", "B"), camera("2", "A"), camera("3", "B")}, {});
     ASSERT_EQ(cameras.size(), 2U);
     EXPECT_EQ(cameras[0].id, "0");
     EXPECT_EQ(cameras[1].id, "1");
 }
 
 TEST(Cameras, OfOneNameAreAsManyAsThereAreNodes) {
-    const std::vector<V4l2Node> nodes = {{"/dev/video0", "A"}, {"/dev/video2", "A"}, {"/dev/video4", "B"},
-                                         {"/dev/video6", "A", EACCES}};
-    const auto cameras = withoutDoubles({camera("0", "A"), camera("1", "A"), camera("2", "B"), camera("3", "A"),
-                                         camera("4", "A"), camera("5", "B")},
-                                        nodes);
+    const std::vector<V4l2Node> nodes = {
+        {"/dev/video0", "A"}, {"/dev/video2", "A"}, {"/dev/video4", "B"}, {"/dev/video6", "A", EACCES}};
+    const auto cameras = withoutDoubles(
+        {camera("0", "A"), camera("1", "A"), camera("2", "B"), camera("3", "A"), camera("4", "A"), camera("5", "B")},
+        nodes);
     ASSERT_EQ(cameras.size(), 3U);
     EXPECT_EQ(cameras[1].id, "1");
     EXPECT_EQ(cameras[1].ordinal, 1U);

@@ -50,8 +50,9 @@ TEST_F(ControlLocks, ArePutBackWhateverTheCameraIsLike) {
         node = FakeNode::webcam("Webcam");
         std::erase_if(node->controls, [&](const auto&) { return random.uniform() < 0.2; });
         for (auto& [id, control] : node->controls) {
-            control.value = control.minimum + control.step * static_cast<int>(random.index(static_cast<std::size_t>(
-                                                                 (control.maximum - control.minimum) / control.step + 1)));
+            control.value =
+                control.minimum + control.step * static_cast<int>(random.index(static_cast<std::size_t>(
+                                                     (control.maximum - control.minimum) / control.step + 1)));
             control.isRefused = random.uniform() < 0.2;
             control.isStubborn = random.uniform() < 0.2;
         }
@@ -97,9 +98,8 @@ TEST(CaptureNodes, AreThoseThatGivePicturesAndThoseThatCannotBeOpened) {
     metadata->can = V4L2_CAP_META_CAPTURE;
     auto forbidden = FakeNode::webcam("Secret");
     forbidden->openError = EACCES;
-    const test::FakeV4l2 system({{"/dev/video0", FakeNode::webcam("Webcam")},
-                                 {"/dev/video1", metadata},
-                                 {"/dev/video2", forbidden}});
+    const test::FakeV4l2 system(
+        {{"/dev/video0", FakeNode::webcam("Webcam")}, {"/dev/video1", metadata}, {"/dev/video2", forbidden}});
     const auto nodes = captureNodes(system);
     ASSERT_EQ(nodes.size(), 2U);
     EXPECT_EQ(nodes[0].path, "/dev/video0");

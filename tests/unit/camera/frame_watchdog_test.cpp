@@ -235,7 +235,8 @@ TEST(FrameWatchdog, NamesWhatIsWrongWithThePicturesThatCome) {
     using Tamper = std::function<void(Watched&, CameraFrame&)>;
     const std::vector<std::pair<CameraTrouble, Tamper>> cases = {
         {CameraTrouble::Unreadable, [](Watched&, CameraFrame& frame) { frame.image = cv::Mat(); }},
-        {CameraTrouble::WrongSize, [](Watched& source, CameraFrame& frame) { frame.image = noise(source.random, 9, 9); }},
+        {CameraTrouble::WrongSize,
+         [](Watched& source, CameraFrame& frame) { frame.image = noise(source.random, 9, 9); }},
         {CameraTrouble::Frozen, [](Watched& source, CameraFrame& frame) { frame.image = source.last.image; }},
         {CameraTrouble::Unsteady, [](Watched&, CameraFrame& frame) { frame.sequence = 1; }},
         {CameraTrouble::Unsteady, [](Watched& source, CameraFrame& frame) { frame.time = source.last.time; }},

@@ -18,7 +18,8 @@ bool makeVideo(const QString& file, int frames) {
     gst_init(nullptr, nullptr);
     const std::string launch = "videotestsrc pattern=ball num-buffers=" + std::to_string(frames) +
                                " ! video/x-raw,format=I420,width=320,height=240,framerate=25/1 ! jpegenc ! avimux ! "
-                               "filesink location=\"" + file.toStdString() + "\"";
+                               "filesink location=\"" +
+                               file.toStdString() + "\"";
     GstElement* pipeline = gst_parse_launch(launch.c_str(), nullptr);
     gst_element_set_state(pipeline, GST_STATE_PLAYING);
     GstBus* bus = gst_element_get_bus(pipeline);

@@ -16,8 +16,8 @@ struct Case {
 };
 
 const std::vector<Case> kCases = {
-    {PixelLayout::Luma, 1, {0}},       {PixelLayout::LumaHigh, 2, {1}},    {PixelLayout::Yuyv, 2, {0}},
-    {PixelLayout::Uyvy, 2, {1}},       {PixelLayout::Bgra, 4, {0, 1, 2}},  {PixelLayout::Rgba, 4, {2, 1, 0}},
+    {PixelLayout::Luma, 1, {0}},       {PixelLayout::LumaHigh, 2, {1}},   {PixelLayout::Yuyv, 2, {0}},
+    {PixelLayout::Uyvy, 2, {1}},       {PixelLayout::Bgra, 4, {0, 1, 2}}, {PixelLayout::Rgba, 4, {2, 1, 0}},
     {PixelLayout::Argb, 4, {3, 2, 1}}, {PixelLayout::Abgr, 4, {1, 2, 3}},
 };
 
@@ -27,7 +27,8 @@ TEST(VideoPixels, AreThoseInMemoryWhateverTheStride) {
             Random random(seed, "pixels");
             const int width = 1 + static_cast<int>(random.index(40));
             const int height = 1 + static_cast<int>(random.index(30));
-            const auto stride = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(width * one.bytes) + random.index(9));
+            const auto stride =
+                static_cast<std::ptrdiff_t>(static_cast<std::size_t>(width * one.bytes) + random.index(9));
             // The last row may end with its last pixel.
             std::vector<std::uint8_t> bytes(static_cast<std::size_t>(stride * (height - 1) + width * one.bytes));
             for (auto& byte : bytes)
@@ -38,8 +39,9 @@ TEST(VideoPixels, AreThoseInMemoryWhateverTheStride) {
             for (int row = 0; row < height; ++row) {
                 for (int column = 0; column < width; ++column) {
                     for (std::size_t channel = 0; channel < one.picks.size(); ++channel)
-                        ASSERT_EQ(picture.ptr(row)[column * picture.channels() + static_cast<int>(channel)],
-                                  bytes[static_cast<std::size_t>(row * stride + column * one.bytes + one.picks[channel])]);
+                        ASSERT_EQ(
+                            picture.ptr(row)[column * picture.channels() + static_cast<int>(channel)],
+                            bytes[static_cast<std::size_t>(row * stride + column * one.bytes + one.picks[channel])]);
                 }
             }
             // Memory of its own.

@@ -82,7 +82,8 @@ class Webcam : public testing::Test {
             why_ = why;
             heard_.emplace_back("failed");
         });
-        QObject::connect(camera_.get(), &FrameSource::stopped, camera_.get(), [this] { heard_.emplace_back("stopped"); });
+        QObject::connect(camera_.get(), &FrameSource::stopped, camera_.get(),
+                         [this] { heard_.emplace_back("stopped"); });
     }
 
     [[nodiscard]] bool runFor(std::size_t frames) {
@@ -369,8 +370,9 @@ TEST_F(WithNode, SaysWhyItGivesNoPictures) {
     options.watchdog.firstPicture = std::chrono::milliseconds(300);
     device_.hang();
     ASSERT_TRUE(plugAndMake(options));
-    for (const auto& [error, trouble] :
-         {std::pair(EBUSY, CameraTrouble::Busy), {EACCES, CameraTrouble::Forbidden}, {0, CameraTrouble::NoFirstPicture}}) {
+    for (const auto& [error, trouble] : {std::pair(EBUSY, CameraTrouble::Busy),
+                                         {EACCES, CameraTrouble::Forbidden},
+                                         {0, CameraTrouble::NoFirstPicture}}) {
         camera_->start();
         node().formatError = error == EBUSY ? EBUSY : 0;
         node().openError = error == EACCES ? EACCES : 0;
@@ -390,7 +392,8 @@ TEST_F(ListedTwice, IsOfferedOnce) {
     device_.plug();
     const auto times = [&] {
         const auto all = QMediaDevices::videoInputs();
-        return std::count_if(all.begin(), all.end(), [&](const auto& device) { return device.description().toStdString() == name_; });
+        return std::count_if(all.begin(), all.end(),
+                             [&](const auto& device) { return device.description().toStdString() == name_; });
     };
     ASSERT_TRUE(waitFor([&] { return times() == 2; }));
     list_->refresh();

@@ -9,6 +9,7 @@
 #include "core/rig/simulated_rig.h"
 #include "core/session/session_keeper.h"
 #include "ui/scene3d/scene_widget.h"
+#include "ui/window/camera_offers.h"
 #include "ui/window/file_actions.h"
 #include "ui/window/main_window.h"
 #include "ui/window/rig_offers.h"
@@ -33,6 +34,8 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
     MainWindow window(workbench);
     window.setDark(!options.light);
     window.show();
+    // After the window is there: asking all cameras what they can do takes its time.
+    const CameraOffers cameras(workbench, std::make_shared<CameraList>());
     const QString config = QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation);
     window.files().keepRecentIn(QDir(config).filePath(QStringLiteral("window.ini")));
     const QString kept =

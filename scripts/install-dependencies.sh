@@ -9,6 +9,8 @@ packages=(
   libexpected-dev libfmt-dev libssl-dev libjpeg-dev libpng-dev libtinyxml2-dev libyaml-cpp-dev libx11-dev
   zlib1g-dev libprotobuf-dev protobuf-compiler nanopb libnanopb-dev
   qt6-base-dev qt6-serialport-dev libqt6opengl6-dev qt6-tools-dev qt6-tools-dev-tools qt6-l10n-tools libxkbcommon-dev libgl-dev
+  qt6-multimedia-dev gstreamer1.0-plugins-base gstreamer1.0-plugins-good libgstreamer1.0-dev
+  libgstreamer-plugins-base1.0-dev
   libgl1-mesa-dri
   libgtest-dev libgmock-dev libbenchmark-dev liburdfdom-dev clang-format-14
   xvfb xauth fonts-dejavu-core

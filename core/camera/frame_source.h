@@ -2,27 +2,23 @@
 
 #include <QObject>
 #include <QString>
+#include <array>
 #include <chrono>
 #include <cstdint>
-#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <vector>
 
+#include "core/camera/camera_controls.h"
+#include "core/camera/camera_frame.h"
+#include "core/camera/camera_trouble.h"
+
 namespace skincal {
 
-/// A picture as the camera took it. The pixels are shared, never written to.
-struct CameraFrame {
-    cv::Mat image;                     ///< 8 bit, grey or BGR
-    std::chrono::microseconds time{};  ///< of exposure, std::chrono::steady_clock since its epoch
-    std::uint64_t sequence = 0;        ///< rises by one with every frame that the camera took, dropped ones included
-};
-
-struct FrameFormat {
-    int width = 0;
-    int height = 0;
-    double framesPerSecond = 0;
-
-    friend bool operator==(const FrameFormat&, const FrameFormat&) = default;
+/// Why a source ended, for whom it has to be said in words.
+struct CameraFailure {
+    CameraTrouble trouble{};
+    QString where{};   ///< the device's node or the file, where it matters
+    QString detail{};  ///< what the multimedia library said
 };
 
 /// Something that gives pictures: a webcam, a video file, a simulation. Asynchronous like SkinDevice; frames that
@@ -33,6 +29,7 @@ class FrameSource : public QObject {
     using QObject::QObject;
 
     [[nodiscard]] virtual QString name() const = 0;
+    /// Empty while that is not known: of a video before its first picture.
     [[nodiscard]] virtual std::vector<FrameFormat> formats() const = 0;
     [[nodiscard]] virtual FrameFormat format() const = 0;
     /// One of formats(); takes effect at once where it runs.
@@ -49,6 +46,14 @@ class FrameSource : public QObject {
             std::chrono::steady_clock::now().time_since_epoch());
     }
 
+    /// What became of the controls that should stand still while pictures are taken; empty where nothing is to be said
+    /// of them: before they are locked, and of what is no camera.
+    [[nodiscard]] virtual std::vector<ControlState> controls() const { return {}; }
+    /// How many pictures of this run were not passed on, by FrameFault.
+    [[nodiscard]] virtual std::array<std::uint64_t, kFrameFaults> refused() const { return {}; }
+    /// Why failed() was said last; nothing where there is no more to say than its sentence.
+    [[nodiscard]] virtual std::optional<CameraFailure> failure() const { return std::nullopt; }
+
     /// frameArrived() again and again, or failed().
     virtual void start() = 0;
     /// stopped() follows where it ran.
@@ -57,7 +62,12 @@ class FrameSource : public QObject {
   signals:
     void frameArrived(const skincal::CameraFrame& frame);
     void stopped();
+    /// Short English; failure() has the code.
     void failed(const QString& why);
+    /// Formats, exposure or controls are other than before.
+    void abilitiesChanged();
+    /// What failed since it was gone is there again: start() would do.
+    void returned();
 };
 
 }  // namespace skincal

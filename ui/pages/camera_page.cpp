@@ -4,10 +4,14 @@
 #include <QFileDialog>
 #include <QPushButton>
 #include <QSlider>
+#include <algorithm>
 #include <cmath>
 
+#include "core/camera/media_source.h"
 #include "core/formats/camera_file.h"
 #include "ui/pages/calibration_dialog.h"
+#include "ui/pages/video_dialog.h"
+#include "ui/presenters/camera_words.h"
 #include "ui/widgets/histogram_view.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/picture_view.h"
@@ -33,6 +37,7 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
       picture_(new PictureView),
       histogram_(new HistogramView),
       figures_(mutedLabel()),
+      controls_(mutedLabel()),
       intrinsics_(new QLabel),
       load_(new QPushButton(tr("Load intrinsics …"))),
       makers_(new QPushButton(tr("Use the maker's intrinsics"))),
@@ -40,8 +45,9 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     auto* top = new QHBoxLayout;
     devices_->setAccessibleName(tr("Camera"));
     devices_->setToolTip(tr("The camera that looks at the body"));
-    for (const auto& offer : workbench.cameraOffers)
-        devices_->addItem(offer.name);
+    devices_->setObjectName(QStringLiteral("cameras"));
+    devices_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+    devices_->setMinimumContentsLength(14);
     formats_->setAccessibleName(tr("Resolution"));
     formats_->setToolTip(tr("Size and rate of the pictures; intrinsics hold for one size"));
     exposure_->setRange(0, kSliderSteps);
@@ -54,7 +60,7 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     exposureText_->setMinimumWidth(64);
     top->addWidget(exposureText_);
     body().addLayout(top);
-    picture_->setPlaceholder(tr("The camera's picture appears here."));
+    showPlaceholder();
     body().addWidget(picture_, 1);
     auto* below = new QHBoxLayout;
     auto* left = new QVBoxLayout;
@@ -64,6 +70,8 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     auto* right = new QVBoxLayout;
     intrinsics_->setWordWrap(true);
     right->addWidget(intrinsics_);
+    controls_->setObjectName(QStringLiteral("controls"));
+    controls_->setWordWrap(true);
     right->addWidget(mutedLabel(tr("Reads ROS camera_info YAML, OpenCV YAML or XML, and Kalibr camchain YAML.")));
     auto* buttons = new QHBoxLayout;
     load_->setObjectName(QStringLiteral("loadIntrinsics"));
@@ -71,7 +79,6 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     makers_->setObjectName(QStringLiteral("makersIntrinsics"));
     makers_->setProperty("primary", true);
     makers_->setToolTip(tr("The simulated camera knows its own lens"));
-    makers_->setVisible(workbench.hands && workbench.hands->intrinsics);
     calibrate_->setObjectName(QStringLiteral("calibrateHere"));
     calibrate_->setToolTip(tr("Show a printed chessboard or ChArUco board to this camera and get its intrinsics"));
     buttons->addWidget(makers_);
@@ -79,14 +86,12 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     buttons->addWidget(load_);
     buttons->addStretch();
     right->addLayout(buttons);
+    right->addWidget(controls_);
     right->addStretch();
     below->addLayout(right, 1);
     body().addLayout(below);
 
-    connect(devices_, &QComboBox::activated, this, [this](int offer) {
-        if (offer != workbench_.chosenCamera())
-            workbench_.chooseCamera(static_cast<std::size_t>(offer));
-    });
+    connect(devices_, &QComboBox::activated, this, &CameraPage::chooseDevice);
     connect(formats_, &QComboBox::activated, this, [this](int index) {
         if (FrameSource* camera = workbench_.camera())
             camera->setFormat(camera->formats().at(static_cast<std::size_t>(index)));
@@ -109,13 +114,22 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     connect(makers_, &QPushButton::clicked, this,
             [this] { adopt(*workbench_.hands->intrinsics, tr("Use the maker's intrinsics")); });
     connect(calibrate_, &QPushButton::clicked, this, &CameraPage::calibrateHere);
-    connect(&workbench, &Workbench::cameraChosen, this, &CameraPage::listFormats);
+    connect(&workbench, &Workbench::cameraOffersChanged, this, &CameraPage::listDevices);
+    connect(&workbench, &Workbench::cameraChosen, this, [this] {
+        connect(workbench_.camera(), &FrameSource::abilitiesChanged, this, &CameraPage::listFormats);
+        showPlaceholder();
+        listFormats();
+    });
     connect(&workbench.session(), &Session::decisionsChanged, this, &CameraPage::refresh);
     connect(&scan, &ScanPresenter::pictureChanged, this, [this] {
         if (isActive_)
             showPicture();
     });
-    listFormats();
+    connect(&scan, &ScanPresenter::cameraFailed, this, [this](const QString& why) {
+        picture_->setPlaceholder(why);
+        refresh();
+    });
+    listDevices();
 }
 
 CameraPage::~CameraPage() {
@@ -154,12 +168,68 @@ void CameraPage::adopt(const CameraModel& camera, const QString& text) {
     workbench_.session().decide(text, [&](Decisions& decisions) { decisions.camera = camera; });
 }
 
+void CameraPage::listDevices() {
+    devices_->clear();
+    for (const auto& offer : workbench_.cameraOffers) {
+        devices_->addItem(offer.name);
+        devices_->setItemData(devices_->count() - 1, offer.description, Qt::ToolTipRole);
+    }
+    devices_->insertSeparator(devices_->count());
+    devices_->addItem(tr("Video file or stream …"));
+    devices_->setItemData(devices_->count() - 1, tr("Takes pictures from a video or a camera in the network"),
+                          Qt::ToolTipRole);
+    listFormats();
+}
+
+void CameraPage::showPlaceholder() {
+    picture_->setPlaceholder(tr("The camera's picture appears here."));
+}
+
+void CameraPage::chooseDevice(int offer) {
+    if (offer >= static_cast<int>(workbench_.cameraOffers.size())) {
+        devices_->setCurrentIndex(workbench_.chosenCamera());
+        askForVideo();
+    } else if (offer != workbench_.chosenCamera()) {
+        workbench_.chooseCamera(static_cast<std::size_t>(offer));
+    } else {
+        // One that failed is tried again.
+        scan_.setActive(isActive_);
+    }
+}
+
+void CameraPage::askForVideo() {
+    auto* dialog = new VideoDialog(this);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &QDialog::accepted, this, [this, dialog] {
+        if (const auto url = dialog->url())
+            openVideo(*url);
+    });
+    dialog->open();
+}
+
+void CameraPage::openVideo(const QUrl& url) {
+    const QString key = QStringLiteral("video:") + url.toString();
+    auto offers = workbench_.cameraOffers;
+    const auto known = std::find_if(offers.begin(), offers.end(), [&](const auto& offer) { return offer.key == key; });
+    const auto index = static_cast<std::size_t>(known - offers.begin());
+    if (known == offers.end()) {
+        offers.push_back({MediaSource(url).name(), url.toDisplayString(QUrl::RemoveUserInfo | QUrl::PreferLocalFile),
+                          [url] { return std::make_unique<MediaSource>(url); }, key});
+        workbench_.setCameraOffers(std::move(offers));
+    }
+    chooseDevice(static_cast<int>(index));
+}
+
 void CameraPage::listFormats() {
     formats_->clear();
     if (const FrameSource* camera = workbench_.camera()) {
         devices_->setCurrentIndex(workbench_.chosenCamera());
         for (const FrameFormat& format : camera->formats()) {
-            formats_->addItem(tr("%1 × %2, %3 /s").arg(format.width).arg(format.height).arg(format.framesPerSecond));
+            // Rates such as 29.97 are to be read, not to be computed with.
+            const QString rate = QString::number(std::round(100 * format.framesPerSecond) / 100);
+            formats_->addItem(format.framesPerSecond > 0
+                                  ? tr("%1 × %2, %3 /s").arg(format.width).arg(format.height).arg(rate)
+                                  : tr("%1 × %2").arg(format.width).arg(format.height));
             if (format == camera->format())
                 formats_->setCurrentIndex(formats_->count() - 1);
         }
@@ -178,6 +248,7 @@ void CameraPage::showPicture() {
     picture_->setImage(toImage(scan_.picture()));
     if (scan_.picture().empty())
         return;
+    showNotes();
     const PictureFigures figures = figuresOf(scan_.picture());
     histogram_->setFigures(figures);
     figures_->setText(tr("Clipped: %1 % bright, %2 % dark.  Sharpness %3 (largest is sharpest)")
@@ -186,12 +257,28 @@ void CameraPage::showPicture() {
                           .arg(figures.sharpness, 0, 'f', 3));
 }
 
+void CameraPage::showNotes() {
+    const FrameSource* source = workbench_.camera();
+    QStringList notes;
+    if (source != nullptr)
+        notes = {controlWords(source->controls()), refusedWords(source->refused())};
+    notes.removeAll(QString());
+    controls_->setText(notes.join(QLatin1Char(' ')));
+    controls_->setVisible(!notes.isEmpty());
+}
+
 void CameraPage::refresh() {
     const FrameSource* source = workbench_.camera();
+    showNotes();
+    formats_->setEnabled(formats_->count() > 0);
     exposureText_->setText(source != nullptr && source->exposure()
                                ? tr("%1 ms").arg(1e3 * *source->exposure(), 0, 'f', 1)
                                : tr("automatic"));
     const auto& camera = workbench_.session().decisions().camera;
+    // Those of a rig never go, and have no key.
+    const int chosen = workbench_.chosenCamera();
+    makers_->setVisible(workbench_.hands && workbench_.hands->intrinsics &&
+                        (chosen < 0 || workbench_.cameraOffers.at(static_cast<std::size_t>(chosen)).key.isEmpty()));
     makers_->setEnabled(!camera);
     if (!camera) {
         intrinsics_->setText(tr("<b>Intrinsics are not known yet.</b>"));
@@ -209,7 +296,8 @@ void CameraPage::refresh() {
                        .arg(camera->distortion.size());
     if (const QString from = board_.provenanceOf(*camera); !from.isEmpty())
         text += tr(" They were %1.").arg(from);
-    if (source != nullptr && (source->format().width != camera->width || source->format().height != camera->height))
+    if (source != nullptr && source->format().width > 0 &&
+        (source->format().width != camera->width || source->format().height != camera->height))
         text += tr(" <b>The camera gives %1 × %2: choose that size, or other intrinsics.</b>")
                     .arg(source->format().width)
                     .arg(source->format().height);

@@ -7,6 +7,7 @@
 class QComboBox;
 class QPushButton;
 class QSlider;
+class QUrl;
 
 namespace skincal {
 
@@ -21,6 +22,8 @@ class CameraPage : public Page {
     ~CameraPage() override;
 
     void setActive(bool active) override;
+    /// Offers a video file or stream, and chooses it.
+    void openVideo(const QUrl& url);
     /// A ROS, OpenCV or Kalibr file.
     void loadIntrinsics(const QString& file);
 
@@ -28,9 +31,14 @@ class CameraPage : public Page {
     void failed(const QString& why);
 
   private:
+    void listDevices();
+    void chooseDevice(int offer);
+    void askForVideo();
     void listFormats();
     void refresh();
     void showPicture();
+    void showPlaceholder();
+    void showNotes();
     void calibrateHere();
     void adopt(const CameraModel& camera, const QString& text);
 
@@ -44,6 +52,7 @@ class CameraPage : public Page {
     PictureView* picture_;
     HistogramView* histogram_;
     QLabel* figures_;
+    QLabel* controls_;
     QLabel* intrinsics_;
     QPushButton* load_;
     QPushButton* makers_;

@@ -1,5 +1,7 @@
 #include "ui/presenters/picture_series.h"
 
+#include "ui/presenters/camera_words.h"
+
 namespace skincal {
 
 PictureSeries::PictureSeries(Workbench& workbench, QObject* parent) : QObject(parent), workbench_(workbench) {
@@ -70,7 +72,7 @@ void PictureSeries::attachCamera() {
     });
     connect(workbench_.camera(), &FrameSource::failed, this, [this](const QString& why) {
         newest_ = {};
-        fail(why);
+        fail(failureWords(*workbench_.camera(), why));
     });
 }
 

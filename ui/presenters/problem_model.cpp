@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ui/presenters/camera_words.h"
+
 namespace skincal {
 namespace {
 
@@ -110,6 +112,11 @@ ProblemModel::ProblemModel(Workbench& workbench, const ConnectPresenter& connect
             refresh();
         }
     });
+    connect(&workbench, &Workbench::cameraChosen, this, [this] {
+        cameraFailure_.clear();
+        connect(workbench_.camera(), &FrameSource::abilitiesChanged, this, &ProblemModel::refresh);
+        refresh();
+    });
     connect(&scan, &ScanPresenter::scanned, this, [this](const std::string& view, double moved_px, std::size_t shone) {
         scans_[view] = {moved_px, shone};
         refresh();
@@ -173,6 +180,14 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
         problems.push_back({Severity::Error, Step::Connect, sentence(connection_.state().why), {}, {}});
     if (!cameraFailure_.isEmpty())
         problems.push_back({Severity::Error, Step::Camera, cameraFailure_, {}, {}});
+    if (workbench_.camera() != nullptr && mayBrightnessChange(workbench_.camera()->controls()))
+        problems.push_back(
+            {Severity::Note,
+             Step::Camera,
+             tr("The camera may change its exposure in the midst of a scan: keep the light even, and scan "
+                "a view again where few modules were found"),
+             {},
+             {}});
     if (scan_.state().phase == ScanRun::Phase::Failed)
         problems.push_back({Severity::Error,
                             Step::Scan,

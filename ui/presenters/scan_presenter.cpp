@@ -2,6 +2,8 @@
 
 #include <QtConcurrent/QtConcurrentRun>
 
+#include "ui/presenters/camera_words.h"
+
 namespace skincal {
 
 ScanPresenter::ScanPresenter(Workbench& workbench, QObject* parent)
@@ -122,9 +124,11 @@ void ScanPresenter::attachCamera() {
     connect(camera, &FrameSource::failed, this, [this](const QString& why) {
         newest_ = {};
         isCameraRunning_ = false;
-        emit cameraFailed(why);
+        emit cameraFailed(failureWords(*workbench_.camera(), why));
         emit pictureChanged();
     });
+    // Plugged in again, it goes on where it is looked at.
+    connect(camera, &FrameSource::returned, this, [this] { setActive(isActive_); });
     setActive(isActive_);
 }
 

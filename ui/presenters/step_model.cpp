@@ -42,7 +42,7 @@ QString sentenceOf(StepReason reason) {
         case StepReason::NoCamera:
             return StepModel::tr("choose a camera");
         case StepReason::CameraLost:
-            return StepModel::tr("the camera is gone");
+            return StepModel::tr("the camera gives no pictures");
         case StepReason::NoIntrinsics:
             return StepModel::tr("intrinsics are needed");
         case StepReason::NoViews:

@@ -21,6 +21,7 @@ struct Offer {
     QString name;
     QString description;
     std::function<std::unique_ptr<Device>()> make;
+    QString key{};  ///< the same as long as it is the same device; empty for one that never goes
 };
 
 /// Hands that do what the window asks for: only a simulated rig has them. Relative to a module, since nobody but the
@@ -61,6 +62,9 @@ class Workbench : public QObject {
     [[nodiscard]] FrameSource* camera() const { return camera_.get(); }
     void chooseSkin(std::size_t offer);
     void chooseCamera(std::size_t offer);
+    /// Other cameras can be chosen from now on. The chosen one stays chosen, found by its key, or by its name
+    /// where it has none.
+    void setCameraOffers(std::vector<Offer<FrameSource>> offers);
     [[nodiscard]] int chosenSkin() const { return chosenSkin_; }
     [[nodiscard]] int chosenCamera() const { return chosenCamera_; }
 
@@ -75,6 +79,7 @@ class Workbench : public QObject {
   signals:
     void skinChosen();
     void cameraChosen();
+    void cameraOffersChanged();
     void skinReadyChanged(bool ready);
     /// Somebody blinks an LED for a moment.
     void lightsClaimed();

@@ -53,6 +53,16 @@
     </message>
 </context>
 <context>
+    <name>skincal::ConnectPresenter</name>
+    <message numerus="yes">
+        <source>The network went silent after %n modules had reported</source>
+        <translation>
+            <numerusform>The network went silent after %n module had reported</numerusform>
+            <numerusform>The network went silent after %n modules had reported</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>skincal::DetectionModel</name>
     <message numerus="yes">
         <source>Reject %n detections in %1</source>

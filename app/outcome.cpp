@@ -32,6 +32,14 @@ std::optional<std::string> complaintAboutOutput(const std::filesystem::path& out
     return std::nullopt;
 }
 
+std::optional<std::string> complaintAboutExisting(const std::filesystem::path& output) {
+    std::error_code error;
+    if (!std::filesystem::exists(output, error))
+        return std::nullopt;
+    return FileError{output, "", "there is such a file already: give another with -o, or --force to replace it"}
+        .message();
+}
+
 std::vector<std::filesystem::path> pathsOf(const std::filesystem::path& directory, const Recording& recording) {
     std::vector<std::filesystem::path> paths;
     for (const std::string& file : filesOf(recording))

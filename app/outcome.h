@@ -21,6 +21,10 @@ int reportFailure(const CalibrateError& error);
 [[nodiscard]] std::optional<std::string> complaintAboutOutput(const std::filesystem::path& output,
                                                               const std::vector<std::filesystem::path>& inputs = {});
 
+/// A complaint where there is such a file already. What took long to measure or to compute, recordings and body models,
+/// is replaced only where --force is given; what follows from a body model in a moment is replaced without a word.
+[[nodiscard]] std::optional<std::string> complaintAboutExisting(const std::filesystem::path& output);
+
 /// The files of a recording, for complaintAboutOutput.
 [[nodiscard]] std::vector<std::filesystem::path> pathsOf(const std::filesystem::path& directory,
                                                          const Recording& recording);

@@ -9,6 +9,7 @@
 #include "core/rig/simulated_rig.h"
 #include "core/session/session_keeper.h"
 #include "ui/scene3d/scene_widget.h"
+#include "ui/texts/plural_forms.h"
 #include "ui/window/camera_offers.h"
 #include "ui/window/file_actions.h"
 #include "ui/window/main_window.h"
@@ -24,6 +25,7 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
         qputenv("QT_QPA_PLATFORM", "xcb");
     QSurfaceFormat::setDefaultFormat(SceneWidget::sceneFormat());
     QApplication application(argc, argv);
+    installPluralForms(application);
     QApplication::setApplicationName(QStringLiteral("SkinCal"));
     QApplication::setApplicationVersion(QStringLiteral(SKINCAL_VERSION));
     QApplication::setStyle(QStyleFactory::create(QStringLiteral("Fusion")));

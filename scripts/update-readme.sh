@@ -12,7 +12,7 @@ skincal=build/release/bin/skincal
 # "placed of all: position rms in mm, rotation rms in degrees" of RECORDING by METHOD; 1 is the exit code of a body
 # with modules missing.
 outcome() {
-  "$skincal" calibrate "$1" --method "$2" -o "$work/body.json" >/dev/null || [ $? -eq 1 ]
+  "$skincal" calibrate --force "$1" --method "$2" -o "$work/body.json" >/dev/null || [ $? -eq 1 ]
   "$skincal" compare --json "$work/body.json" "$1/truth.json" | awk -F '[:,] *' '
     { gsub(/"| /, "", $1); value[$1] = $2 }
     END { printf "%s of %s: %.2f mm, %.1f°", value["placed"], value["modules"],

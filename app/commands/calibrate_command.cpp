@@ -16,6 +16,7 @@ struct CalibrateArguments {
     std::filesystem::path output;
     std::string method{name(CalibrateOptions{}.method)};
     double misalignment_deg = 0;
+    bool force = false;
     bool json = false;
 };
 
@@ -33,6 +34,8 @@ int runCalibrate(const CalibrateArguments& arguments) {
         return badInput(recording.error().message());
     const auto output = arguments.output.empty() ? defaultOutput(arguments.recording) : arguments.output;
     if (const auto complaint = complaintAboutOutput(output, pathsOf(arguments.recording, *recording)))
+        return badInput(*complaint);
+    if (const auto complaint = complaintAboutExisting(output); complaint && !arguments.force)
         return badInput(*complaint);
     CalibrateOptions options;
     options.method = *methodFromName(arguments.method);
@@ -84,6 +87,7 @@ void addCalibrateCommand(CommandLine& line) {
             "How far accelerometers sit askew on their boards, in degrees about each axis (standard deviation), "
             "where their maker says so; joint method only. It enters the uncertainties, too")
         ->check(CLI::Range(0.0, 20.0));
+    command->add_flag("--force", arguments->force, "Replace a body model, or another file, that is there");
     command->add_flag("--json", arguments->json, "Print the quality figures as JSON");
     command->footer(
         "A recording is a directory with recording.json, which holds\n"

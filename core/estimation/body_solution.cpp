@@ -83,9 +83,10 @@ void reportMissing(BodySolution& solution, const Measurements& measurements, con
     }
     if (!estimate.undecidedViews.empty()) {
         estimate.trustAtMost = Trust::Usable;
-        estimate.warnings.push_back(
-            fmt::format("{} views show a flat patch alone and could be in two places: the likelier was taken",
-                        estimate.undecidedViews.size()));
+        estimate.warnings.push_back(fmt::format(
+            "{} a flat patch alone and could be in two places: the likelier was taken",
+            estimate.undecidedViews.size() == 1 ? "1 view shows"
+                                                : fmt::format("{} views show", estimate.undecidedViews.size())));
     }
     reportOwnGravity(solution);
     for (const Finding& finding : estimate.findings)

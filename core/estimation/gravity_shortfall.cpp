@@ -107,9 +107,10 @@ Shortfall alike(const std::vector<WeakModule>& weak, const BodySolution& solutio
     const std::string such =
         shortfall.up_r ? fmt::format(", such as one in which {}", wordsForUp(*shortfall.up_r, solution)) : "";
     shortfall.text = fmt::format(
-        "gravity poses are too few or too alike{} ({} poses, tilted by at most {:.0f}°): how modules are turned is {}; "
+        "gravity poses are too few or too alike{} ({}, tilted by at most {:.0f}°): how modules are turned is {}; "
         "add poses that tilt the body by about 90° from those there are{}",
-        most ? "" : " for " + listed(shortfall.modules), poses, median(std::move(tilts)) / kDegree, known, such);
+        most ? "" : " for " + listed(shortfall.modules), poses == 1 ? "1 pose" : fmt::format("{} poses", poses),
+        median(std::move(tilts)) / kDegree, known, such);
     return shortfall;
 }
 

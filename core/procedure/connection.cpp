@@ -5,6 +5,7 @@ namespace {
 
 using namespace connection;
 using Phase = Connection::Phase;
+using Fault = Connection::Fault;
 using Result = Stepped<Connection, Effect>;
 
 constexpr std::chrono::milliseconds kOpens{3000};
@@ -12,8 +13,8 @@ constexpr std::chrono::milliseconds kOpens{3000};
 constexpr std::chrono::milliseconds kAnswers{3000};
 
 /// Closed in any case: a report may be of an earlier time, and closing what is closed does nothing.
-Result lost(std::string why) {
-    return {{Phase::Lost, 0, std::move(why)}, {CloseDevice{}, StopTimer{}}};
+Result lost(Fault fault, std::size_t found = 0) {
+    return {{Phase::Lost, found, fault}, {CloseDevice{}, StopTimer{}}};
 }
 
 struct Stepper {
@@ -21,19 +22,21 @@ struct Stepper {
 
     [[nodiscard]] bool in(Phase phase) const { return state.phase == phase; }
     [[nodiscard]] bool isOpen() const { return in(Phase::Exploring) || in(Phase::Connected); }
-    [[nodiscard]] Result explore() const { return {{Phase::Exploring, 0, {}}, {Explore{}, StartTimer{kAnswers}}}; }
+    [[nodiscard]] Result explore() const {
+        return {{Phase::Exploring, 0, Fault::None}, {Explore{}, StartTimer{kAnswers}}};
+    }
 
     Result operator()(const Connect&) const {
         if (in(Phase::Connected))
             return explore();
         if (in(Phase::Opening) || in(Phase::Exploring))
             return {state};
-        return {{Phase::Opening, 0, {}}, {OpenDevice{}, StartTimer{kOpens}}};
+        return {{Phase::Opening, 0, Fault::None}, {OpenDevice{}, StartTimer{kOpens}}};
     }
     Result operator()(const Disconnect&) const {
         if (in(Phase::Disconnected) || in(Phase::Lost))
-            return {{Phase::Disconnected, 0, {}}};
-        return {{Phase::Disconnected, 0, {}}, {CloseDevice{}, StopTimer{}}};
+            return {{Phase::Disconnected}};
+        return {{Phase::Disconnected, 0, Fault::None}, {CloseDevice{}, StopTimer{}}};
     }
     Result operator()(const Opened&) const {
         if (!in(Phase::Opening))
@@ -42,29 +45,28 @@ struct Stepper {
     }
     Result operator()(const Closed&) const {
         // In Opening it is the late echo of an earlier CloseDevice: what is to open has not been open.
-        return isOpen() ? lost("the skin was disconnected") : Result{state};
+        return isOpen() ? lost(Fault::Closed) : Result{state};
     }
-    Result operator()(const Failed& failed) const {
+    Result operator()(const Failed&) const {
         if (in(Phase::Opening) || isOpen())
-            return lost(failed.why);
+            return lost(Fault::Failed);
         return {state};
     }
     Result operator()(const ModuleFound&) const {
         if (!in(Phase::Exploring))
             return {state};
-        return {{Phase::Exploring, state.found + 1, {}}, {StartTimer{kAnswers}}};
+        return {{Phase::Exploring, state.found + 1, Fault::None}, {StartTimer{kAnswers}}};
     }
     Result operator()(const Explored&) const {
         if (!in(Phase::Exploring))
             return {state};
-        return {{Phase::Connected, state.found, {}}, {StopTimer{}}};
+        return {{Phase::Connected, state.found, Fault::None}, {StopTimer{}}};
     }
     Result operator()(const TimedOut&) const {
         if (in(Phase::Opening))
-            return lost("the skin does not answer: is it powered, and is this its port?");
+            return lost(Fault::NoAnswer);
         if (in(Phase::Exploring))
-            return lost(state.found == 0 ? "the skin is open, but no module reports"
-                                         : "the network went silent while it was explored");
+            return lost(state.found == 0 ? Fault::NoModules : Fault::Silent, state.found);
         return {state};
     }
 };

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <variant>
 #include <vector>
 
@@ -17,11 +16,20 @@ struct Connection {
         Opening,    ///< the device was told to open
         Exploring,  ///< it is open and modules report
         Connected,  ///< the network is known
-        Lost,       ///< it was there and is not any more, or never came: `why` says
+        Lost,       ///< it was there and is not any more, or never came: `fault` says
+    };
+    /// Why a skin was lost; the window has a sentence for each.
+    enum class Fault {
+        None,
+        Failed,     ///< the device said so, in words of its own
+        Closed,     ///< it went without a word
+        NoAnswer,   ///< it did not open in time
+        NoModules,  ///< it is open, but none reported
+        Silent,     ///< the network went silent after `found` modules
     };
     Phase phase = Phase::Disconnected;
-    std::size_t found = 0;  ///< modules that have reported
-    std::string why{};      ///< in Phase::Lost
+    std::size_t found = 0;      ///< modules that have reported
+    Fault fault = Fault::None;  ///< in Phase::Lost
 
     friend bool operator==(const Connection&, const Connection&) = default;
 };
@@ -32,9 +40,7 @@ struct Connect {};     ///< the operator's; in Connected: explore again
 struct Disconnect {};  ///< the operator's
 struct Opened {};      ///< of the newest OpenDevice
 struct Closed {};
-struct Failed {
-    std::string why;
-};
+struct Failed {};
 struct ModuleFound {};
 struct Explored {};
 struct TimedOut {};  ///< nothing came for as long as StartTimer said

@@ -7,6 +7,7 @@ namespace {
 
 using namespace scan_run;
 using Phase = ScanRun::Phase;
+using Fault = ScanRun::Fault;
 using Result = Stepped<ScanRun, Effect>;
 
 struct Stepper {
@@ -22,10 +23,10 @@ struct Stepper {
         const std::size_t frame = next.next;
         return {std::move(next), {Light{frame}, StartTimer{options.lightAnswers}}};
     }
-    [[nodiscard]] Result failed(std::string why) const {
+    [[nodiscard]] Result failed(Fault fault) const {
         ScanRun next = state;
         next.phase = Phase::Failed;
-        next.why = std::move(why);
+        next.fault = fault;
         return {std::move(next), {StopTimer{}, LightsOff{}, Discard{}}};
     }
 
@@ -93,14 +94,13 @@ struct Stepper {
         next.phase = Phase::Done;
         return {std::move(next)};
     }
-    Result operator()(const Failed& what) const { return isBusy() ? failed(what.why) : Result{state}; }
+    Result operator()(const Failed& what) const { return isBusy() ? failed(what.fault) : Result{state}; }
     Result operator()(const TimedOut&) const {
         if (!state.isRunning())
             return {state};
         // A camera that hiccups once must not cost all pictures so far. Its light is repeated, too: it may be gone.
         if (state.repeats >= options.maxRepeats)
-            return failed(in(Phase::Lighting) ? "the skin does not answer to light commands"
-                                              : "the camera gives no pictures");
+            return failed(in(Phase::Lighting) ? Fault::SkinSilent : Fault::CameraSilent);
         ScanRun next = state;
         ++next.repeats;
         return light(std::move(next));

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <variant>
 #include <vector>
 
@@ -21,7 +20,18 @@ struct ScanRun {
         Paused,
         Decoding,  ///< all pictures are there
         Done,
-        Failed,  ///< `why` says; what was kept is thrown away
+        Failed,  ///< `fault` says; what was kept is thrown away
+    };
+    /// Why a scan was broken off; the window has a sentence for each.
+    enum class Fault {
+        None,
+        SkinSilent,    ///< it does not answer to light commands
+        CameraSilent,  ///< it gives no pictures
+        SkinGone,
+        OtherSkin,
+        OtherCamera,
+        CameraFailed,  ///< it said so, in words of its own
+        NotDecoded,    ///< the pictures don't tell who is where
     };
     Phase phase = Phase::Idle;
     std::size_t frames = 0;                ///< how many there are to take
@@ -29,7 +39,7 @@ struct ScanRun {
     std::optional<std::uint64_t> token{};  ///< of the light command that is waited for
     int repeats = 0;                       ///< times that this frame's light was commanded in vain
     std::chrono::microseconds showsFrom{};
-    std::string why{};
+    Fault fault = Fault::None;  ///< in Phase::Failed
 
     [[nodiscard]] bool isRunning() const { return phase == Phase::Lighting || phase == Phase::Settling; }
     friend bool operator==(const ScanRun&, const ScanRun&) = default;
@@ -70,7 +80,7 @@ struct Resume {};
 struct Cancel {};   ///< in Done and Failed: it has been seen
 struct Decoded {};  ///< of the newest Decode
 struct Failed {
-    std::string why;
+    ScanRun::Fault fault = ScanRun::Fault::None;
 };
 struct TimedOut {};
 

@@ -8,6 +8,7 @@
 #include "app/headless_display.h"
 #include "tests/ui/watchful_application.h"
 #include "ui/scene3d/scene_widget.h"
+#include "ui/texts/plural_forms.h"
 
 int main(int argc, char** argv) {
     ::testing::InitGoogleTest(&argc, argv);
@@ -24,7 +25,8 @@ int main(int argc, char** argv) {
     ::setenv("QT_SCALE_FACTOR", "1", 1);
     QSurfaceFormat::setDefaultFormat(skincal::SceneWidget::sceneFormat());
     QApplication::setStyle("fusion");
-    const skincal::WatchfulApplication application(argc, argv);
+    skincal::WatchfulApplication application(argc, argv);
+    skincal::installPluralForms(application);
     QFont font("DejaVu Sans");
     font.setPixelSize(12);
     QApplication::setFont(font);

@@ -169,7 +169,7 @@ void CalibrationDialog::showBoards() {
     picture_->setCoverage(grid.gridColumns, grid.gridRows, boards.coverage());
     const std::size_t count = boards.views().size();
     progress_->setValue(static_cast<int>(100 * boards.progress()));
-    count_->setText(count == 1 ? tr("1 board") : tr("%1 boards").arg(count));
+    count_->setText(tr("%n boards", nullptr, static_cast<int>(count)));
     const QString wish = presenter_.wish();
     wish_->setText(wish.isEmpty() ? tr("That is enough. Further boards still help a little.")
                                   : tr("<b>Next:</b> %1").arg(wish.toHtmlEscaped()));

@@ -115,7 +115,7 @@ void ConnectPage::refresh() {
                    tr("%n links", nullptr, static_cast<int>(skin.links.size()));
             break;
         case Phase::Lost:
-            text = QString::fromStdString(state.why);
+            text = presenter_.why();
             break;
     }
     status_->setText(text);

@@ -198,8 +198,8 @@ void PicturePanel::showOverlay(const ModelOverlay& overlay) {
     std::stable_partition(shapes.begin(), shapes.end(), [](const PictureShape& shape) { return shape.isDim; });
     picture_->setShapes(std::move(shapes));
     picture_->setMarks(std::move(marks));
-    QString figures = overlay.rms_px ? tr("%1 spots count: %2 px rms, %3 px median, worst %4 px (module %5)")
-                                           .arg(overlay.counted)
+    QString figures = overlay.rms_px ? tr("%n spots count: %1 px rms, %2 px median, worst %3 px (module %4)", nullptr,
+                                          static_cast<int>(overlay.counted))
                                            .arg(*overlay.rms_px, 0, 'f', 3)
                                            .arg(overlay.median_px.value_or(0), 0, 'f', 3)
                                            .arg(overlay.worst_px, 0, 'f', 3)

@@ -225,7 +225,7 @@ void ScanPage::refresh() {
         if (const auto left = presenter_.timeLeft())
             text += tr(", %1 s left").arg(std::chrono::duration<double>(*left).count(), 0, 'f', 0);
     } else if (state.phase == Phase::Failed) {
-        text = tr("Broken off: %1").arg(QString::fromStdString(state.why));
+        text = tr("Broken off: %1").arg(presenter_.why());
     } else {
         text = obstacle.isEmpty() ? tr("Ready: %n pictures of this view will be taken.", nullptr,
                                        static_cast<int>(presenter_.picturesOfAScan()))

@@ -111,7 +111,7 @@ QString sentenceOf(const CalibrationReason& reason) {
     using Kind = CalibrationReason::Kind;
     switch (reason.kind) {
         case Kind::FewBoards:
-            return BoardWords::tr("%1 boards, better %2").arg(reason.found).arg(reason.needed);
+            return BoardWords::tr("%n boards, better %1", nullptr, static_cast<int>(reason.found)).arg(reason.needed);
         case Kind::PoorCoverage:
             return BoardWords::tr("they cover %1 % of the picture, better %2 %")
                 .arg(percent(reason.found), percent(reason.needed));

@@ -41,6 +41,26 @@ std::vector<WiringFault> wiringFaults(const Skin& skin) {
     return faults;
 }
 
+QString sentenceOf(const Connection& connection, const QString& deviceSays) {
+    using Fault = Connection::Fault;
+    switch (connection.fault) {
+        case Fault::None:
+            return {};
+        case Fault::Failed:
+            return deviceSays.isEmpty() ? ConnectPresenter::tr("The skin failed")
+                                        : deviceSays.left(1).toUpper() + deviceSays.mid(1);
+        case Fault::Closed:
+            return ConnectPresenter::tr("The skin was disconnected");
+        case Fault::NoAnswer:
+            return ConnectPresenter::tr("The skin does not answer: is it powered, and is this its port?");
+        case Fault::NoModules:
+            return ConnectPresenter::tr("The skin is open, but no module reports");
+        default:
+            return ConnectPresenter::tr("The network went silent after %n modules had reported", nullptr,
+                                        static_cast<int>(connection.found));
+    }
+}
+
 ConnectPresenter::ConnectPresenter(Workbench& workbench, QObject* parent)
     : QObject(parent), workbench_(workbench), links_(workbench) {
     timer_.setSingleShot(true);
@@ -97,8 +117,10 @@ void ConnectPresenter::attachDevice() {
     timer_.stop();
     connect(device, &SkinDevice::opened, this, [this] { handle(connection::Opened{}); });
     connect(device, &SkinDevice::closed, this, [this] { handle(connection::Closed{}); });
-    connect(device, &SkinDevice::failed, this,
-            [this](const QString& why) { handle(connection::Failed{why.toStdString()}); });
+    connect(device, &SkinDevice::failed, this, [this](const QString& why) {
+        deviceSays_ = why;
+        handle(connection::Failed{});
+    });
     connect(device, &SkinDevice::moduleFound, this, [this](ModuleId module) {
         found_.push_back(module);
         handle(connection::ModuleFound{});

@@ -21,6 +21,10 @@ struct WiringFault {
 /// Modules that no link reaches, ports that two links claim, modules linked to themselves.
 [[nodiscard]] std::vector<WiringFault> wiringFaults(const Skin& skin);
 
+/// Why a skin was lost; empty where it was not.
+/// @param deviceSays  its own words, where it failed
+[[nodiscard]] QString sentenceOf(const Connection& connection, const QString& deviceSays);
+
 /// From a list of devices to a skin whose network is known.
 class ConnectPresenter : public QObject {
     Q_OBJECT
@@ -28,6 +32,8 @@ class ConnectPresenter : public QObject {
     explicit ConnectPresenter(Workbench& workbench, QObject* parent = nullptr);
 
     [[nodiscard]] const Connection& state() const { return state_; }
+    /// A sentence: why the skin was lost. Empty where it was not.
+    [[nodiscard]] QString why() const { return sentenceOf(state_, deviceSays_); }
     [[nodiscard]] LinkModel& links() { return links_; }
     [[nodiscard]] const LinkModel& links() const { return links_; }
     /// Those that have reported since the exploration began, in that order.
@@ -51,6 +57,7 @@ class ConnectPresenter : public QObject {
     Workbench& workbench_;
     LinkModel links_;
     Connection state_;
+    QString deviceSays_;  ///< when it failed last
     QTimer timer_;
     QTimer blinkTimer_;
     std::vector<ModuleId> found_;

@@ -178,7 +178,7 @@ std::optional<int> DetectionModel::rowOf(ModuleId module) const {
 
 void DetectionModel::reject(const std::vector<ModuleId>& modules, const QString& why) {
     workbench_.session().decide(
-        tr("Reject %n detection(s) in %1", nullptr, static_cast<int>(modules.size())).arg(view_.c_str()),
+        tr("Reject %n detections in %1", nullptr, static_cast<int>(modules.size())).arg(view_.c_str()),
         [&](Decisions& decisions) {
             for (const ModuleId module : modules)
                 decisions.detections[{view_, module}] = {view_, module, "rejected", why.toStdString()};
@@ -187,7 +187,7 @@ void DetectionModel::reject(const std::vector<ModuleId>& modules, const QString&
 
 void DetectionModel::accept(const std::vector<ModuleId>& modules) {
     workbench_.session().decide(
-        tr("Accept %n detection(s) in %1", nullptr, static_cast<int>(modules.size())).arg(view_.c_str()),
+        tr("Accept %n detections in %1", nullptr, static_cast<int>(modules.size())).arg(view_.c_str()),
         [&](Decisions& decisions) {
             for (const ModuleId module : modules)
                 decisions.detections.erase({view_, module});

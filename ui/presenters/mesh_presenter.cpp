@@ -218,7 +218,7 @@ QString MeshPresenter::sentenceOf(const AlignmentDoubt& doubt) {
         case AlignmentDoubt::Kind::FitsBadly:
             return tr("Modules are typically %1 mm off: this is hardly the mesh of this body.").arg(mm(doubt.value, 1));
         default:
-            return tr("%1 modules have no surface near that faces their way.").arg(doubt.value);
+            return tr("%n modules have no surface near that faces their way.", nullptr, static_cast<int>(doubt.value));
     }
 }
 

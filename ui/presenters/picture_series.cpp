@@ -4,6 +4,28 @@
 
 namespace skincal {
 
+QString sentenceOf(const ScanRun& run, const QString& words) {
+    using Fault = ScanRun::Fault;
+    switch (run.fault) {
+        case Fault::None:
+            return {};
+        case Fault::SkinSilent:
+            return PictureSeries::tr("the skin does not answer to light commands");
+        case Fault::CameraSilent:
+            return PictureSeries::tr("the camera gives no pictures");
+        case Fault::SkinGone:
+            return PictureSeries::tr("the skin was disconnected");
+        case Fault::OtherSkin:
+            return PictureSeries::tr("the skin is another one now");
+        case Fault::OtherCamera:
+            return PictureSeries::tr("another camera was chosen");
+        case Fault::CameraFailed:
+            return words.isEmpty() ? PictureSeries::tr("the camera failed") : words;
+        default:
+            return words.isEmpty() ? PictureSeries::tr("the pictures could not be decoded") : words;
+    }
+}
+
 PictureSeries::PictureSeries(Workbench& workbench, QObject* parent) : QObject(parent), workbench_(workbench) {
     timer_.setSingleShot(true);
     connect(&timer_, &QTimer::timeout, this, [this] { handle(scan_run::TimedOut{}); });
@@ -11,9 +33,9 @@ PictureSeries::PictureSeries(Workbench& workbench, QObject* parent) : QObject(pa
     connect(&workbench, &Workbench::skinChosen, this, &PictureSeries::attachSkin);
     connect(&workbench, &Workbench::skinReadyChanged, this, [this](bool ready) {
         if (!ready)
-            fail(tr("the skin was disconnected"));
+            fail(ScanRun::Fault::SkinGone);
     });
-    connect(&workbench.session(), &Session::skinChanged, this, [this] { fail(tr("the skin is another one now")); });
+    connect(&workbench.session(), &Session::skinChanged, this, [this] { fail(ScanRun::Fault::OtherSkin); });
     if (workbench.camera() != nullptr)
         attachCamera();
     if (workbench.skin() != nullptr)
@@ -42,8 +64,11 @@ void PictureSeries::cancel() {
     handle(scan_run::Cancel{});
 }
 
-void PictureSeries::fail(const QString& why) {
-    handle(scan_run::Failed{why.toStdString()});
+void PictureSeries::fail(ScanRun::Fault fault, const QString& words) {
+    // What fails while nothing runs has not ended the last run.
+    if (isBusy())
+        words_ = words;
+    handle(scan_run::Failed{fault});
 }
 
 void PictureSeries::finish() {
@@ -65,14 +90,14 @@ std::optional<std::chrono::milliseconds> PictureSeries::timeLeft() const {
 
 void PictureSeries::attachCamera() {
     newest_ = {};
-    fail(tr("another camera was chosen"));
+    fail(ScanRun::Fault::OtherCamera);
     connect(workbench_.camera(), &FrameSource::frameArrived, this, [this](const CameraFrame& frame) {
         newest_ = frame;
         handle(scan_run::PictureTaken{frame.time});
     });
     connect(workbench_.camera(), &FrameSource::failed, this, [this](const QString& why) {
         newest_ = {};
-        fail(failureWords(*workbench_.camera(), why));
+        fail(ScanRun::Fault::CameraFailed, failureWords(*workbench_.camera(), why));
     });
 }
 

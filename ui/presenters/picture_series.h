@@ -13,6 +13,10 @@
 
 namespace skincal {
 
+/// Why a scan was broken off, to stand behind a colon; empty where it was not.
+/// @param words  of whoever failed, in place of ours
+[[nodiscard]] QString sentenceOf(const ScanRun& run, const QString& words);
+
 /// Takes a picture of each of a list of lit sets, with the skin and the camera that are on the workbench; the camera
 /// must run meanwhile. What either of them does wrong ends it.
 class PictureSeries : public QObject {
@@ -24,11 +28,14 @@ class PictureSeries : public QObject {
     void pause();
     void resume();
     void cancel();
-    void fail(const QString& why);
+    /// @param words  of whoever failed, where it has any
+    void fail(ScanRun::Fault fault, const QString& words = {});
     /// What was to be done with the pictures is done.
     void finish();
 
     [[nodiscard]] const ScanRun& state() const { return state_; }
+    /// Why it was broken off, to stand behind a colon; empty where it was not.
+    [[nodiscard]] QString why() const { return sentenceOf(state_, words_); }
     /// Until finish(), cancel() or a failure.
     [[nodiscard]] bool isBusy() const { return needsCamera() || state_.phase == ScanRun::Phase::Decoding; }
     [[nodiscard]] bool needsCamera() const { return state_.isRunning() || state_.phase == ScanRun::Phase::Paused; }
@@ -67,6 +74,7 @@ class PictureSeries : public QObject {
     std::vector<FrameInfo> frames_;
     CameraFrame newest_;
     Clock::time_point began_;
+    QString words_;  ///< of who failed last
 };
 
 }  // namespace skincal

@@ -177,7 +177,7 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
     if (kept_)
         problems.push_back(*kept_);
     if (connection_.state().phase == Connection::Phase::Lost)
-        problems.push_back({Severity::Error, Step::Connect, sentence(connection_.state().why), {}, {}});
+        problems.push_back({Severity::Error, Step::Connect, connection_.why(), {}, {}});
     if (!cameraFailure_.isEmpty())
         problems.push_back({Severity::Error, Step::Camera, cameraFailure_, {}, {}});
     if (workbench_.camera() != nullptr && mayBrightnessChange(workbench_.camera()->controls()))
@@ -189,11 +189,7 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
              {},
              {}});
     if (scan_.state().phase == ScanRun::Phase::Failed)
-        problems.push_back({Severity::Error,
-                            Step::Scan,
-                            tr("The scan was broken off: %1").arg(QString::fromStdString(scan_.state().why)),
-                            {},
-                            {}});
+        problems.push_back({Severity::Error, Step::Scan, tr("The scan was broken off: %1").arg(scan_.why()), {}, {}});
     if (!session.failure().isEmpty())
         problems.push_back({Severity::Error, Step::Result, session.failure(), {}, {}});
     for (const WiringFault& fault : wiringFaults(session.measured().skin))

@@ -153,7 +153,7 @@ void ScanPresenter::decodingFinished() {
         return;
     const std::shared_ptr<Outcome> outcome = decoding_.result();
     if (!*outcome) {
-        series_.fail(QString::fromStdString(outcome->error()));
+        series_.fail(ScanRun::Fault::NotDecoded, QString::fromStdString(outcome->error()));
         return;
     }
     ScanResult result = **std::move(outcome);

@@ -20,6 +20,8 @@ class ScanPresenter : public QObject {
 
     [[nodiscard]] DetectionModel& detections() { return detections_; }
     [[nodiscard]] const ScanRun& state() const { return series_.state(); }
+    /// Why the last scan was broken off, to stand behind a colon; empty where it was not.
+    [[nodiscard]] QString why() const { return series_.why(); }
     /// Why a scan can't begin, in a sentence; empty where it can.
     [[nodiscard]] QString obstacle() const;
 

@@ -59,8 +59,8 @@ void addLegend(vtkRenderer& renderer, const BodyModel& body, const PictureOption
     for (std::size_t k = 0; k < std::min(kMaxPatches, body.patches.size()); ++k, y -= step) {
         const BodyPatch& patch = body.patches[k];
         addText(renderer,
-                fmt::format("patch {}: {} modules{}", patch.id.value, patch.modules.size(),
-                            patch.T_body_patch ? "" : ", not placed"),
+                fmt::format("patch {}: {} module{}{}", patch.id.value, patch.modules.size(),
+                            patch.modules.size() == 1 ? "" : "s", patch.T_body_patch ? "" : ", not placed"),
                 size, left, y, patchColour(patch.id), true);
     }
     if (body.patches.size() > kMaxPatches)

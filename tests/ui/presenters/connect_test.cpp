@@ -53,15 +53,29 @@ TEST(ConnectPresenter, SaysThatTheSkinWasUnplugged) {
             [&] { return whileExploring ? desk.connection.found().size() > 3 : desk.workbench.isSkinReady(); }));
         desk.rig.pullSkin();
         ASSERT_TRUE(waitFor([&] { return desk.connection.state().phase == Phase::Lost; }));
-        EXPECT_EQ(desk.connection.state().why, "the skin was unplugged");
+        EXPECT_EQ(desk.connection.state().fault, Connection::Fault::Failed);
+        EXPECT_EQ(desk.connection.why(), "The skin was unplugged") << "in the device's own words";
         EXPECT_FALSE(desk.workbench.isSkinReady());
         EXPECT_EQ(desk.problems.problemAt(0).severity, Problem::Severity::Error);
         desk.connection.connectSkin();
         ASSERT_TRUE(waitFor([&] { return desk.connection.state().phase == Phase::Lost; }));
-        EXPECT_FALSE(desk.connection.state().why.empty());
+        EXPECT_FALSE(desk.connection.why().isEmpty());
         desk.rig.plugSkin();
         ASSERT_TRUE(desk.connectSkin());
     }
+}
+
+TEST(ConnectPresenter, HasASentenceForEveryFault) {
+    using Fault = Connection::Fault;
+    EXPECT_TRUE(sentenceOf({Phase::Connected, 5}, "late words").isEmpty());
+    std::set<QString> sentences;
+    for (const Fault fault : {Fault::Failed, Fault::Closed, Fault::NoAnswer, Fault::NoModules, Fault::Silent})
+        sentences.insert(sentenceOf({Phase::Lost, 0, fault}, {}));
+    EXPECT_EQ(sentences.size(), 5U);
+    EXPECT_FALSE(sentences.contains(QString()));
+    EXPECT_EQ(sentenceOf({Phase::Lost, 0, Fault::Failed}, "no such port"), "No such port");
+    EXPECT_TRUE(sentenceOf({Phase::Lost, 1, Fault::Silent}, {}).contains("after 1 module had"));
+    EXPECT_TRUE(sentenceOf({Phase::Lost, 2, Fault::Silent}, {}).contains("after 2 modules had"));
 }
 
 TEST(ConnectPresenter, AnotherDeviceBeginsAnew) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QSignalSpy>
+#include <set>
 
 #include "tests/wait_for.h"
 
@@ -73,6 +74,21 @@ TEST(PictureSeries, KeepsNoPictureThatWasExposedBeforeItsLightShowed) {
     EXPECT_TRUE(series.isBusy());
     series.finish();
     EXPECT_FALSE(series.isBusy());
+}
+
+TEST(PictureSeries, HasASentenceForEveryFault) {
+    using Fault = ScanRun::Fault;
+    ScanRun run;
+    EXPECT_TRUE(sentenceOf(run, "late words").isEmpty());
+    std::set<QString> sentences;
+    for (const Fault fault : {Fault::SkinSilent, Fault::CameraSilent, Fault::SkinGone, Fault::OtherSkin,
+                              Fault::OtherCamera, Fault::CameraFailed, Fault::NotDecoded}) {
+        run.fault = fault;
+        sentences.insert(sentenceOf(run, {}));
+    }
+    EXPECT_EQ(sentences.size(), 7U);
+    EXPECT_FALSE(sentences.contains(QString()));
+    EXPECT_EQ(sentenceOf(run, "no spots"), "no spots");
 }
 
 }  // namespace

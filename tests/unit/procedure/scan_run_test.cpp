@@ -17,6 +17,8 @@ using Time = std::chrono::microseconds;
 
 constexpr std::nullopt_t kNothing = std::nullopt;
 constexpr ScanRunOptions kOptions{};
+using Fault = ScanRun::Fault;
+
 constexpr StartTimer kLightTimer{500ms};
 constexpr StartTimer kPictureTimer{1100ms};
 
@@ -32,7 +34,7 @@ ScanRun stateIn(Phase phase) {
     state.repeats = phase == Decoding || phase == Done ? 0 : 1;
     state.showsFrom = 1s;
     if (phase == Phase::Failed)
-        state.why = "earlier";
+        state.fault = Fault::OtherCamera;
     return state;
 }
 
@@ -49,7 +51,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Idle, Resume{}, kNothing, none},
         {Idle, Cancel{}, kNothing, none},
         {Idle, Decoded{}, kNothing, none},
-        {Idle, scan_run::Failed{"late"}, kNothing, none},
+        {Idle, scan_run::Failed{Fault::SkinGone}, kNothing, none},
         {Idle, TimedOut{}, kNothing, none},
 
         {Lighting, Start{3}, kNothing, none},
@@ -60,7 +62,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Lighting, Resume{}, kNothing, none},
         {Lighting, Cancel{}, Idle, stops},
         {Lighting, Decoded{}, kNothing, none},
-        {Lighting, scan_run::Failed{"broken"}, Broken, stops},
+        {Lighting, scan_run::Failed{Fault::SkinGone}, Broken, stops},
         {Lighting, TimedOut{}, Lighting, {Light{1}, kLightTimer}},
 
         {Settling, Start{3}, kNothing, none},
@@ -71,7 +73,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Settling, Resume{}, kNothing, none},
         {Settling, Cancel{}, Idle, stops},
         {Settling, Decoded{}, kNothing, none},
-        {Settling, scan_run::Failed{"broken"}, Broken, stops},
+        {Settling, scan_run::Failed{Fault::SkinGone}, Broken, stops},
         {Settling, TimedOut{}, Lighting, {Light{1}, kLightTimer}},
 
         {Paused, Start{3}, kNothing, none},
@@ -82,7 +84,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Paused, Resume{}, Lighting, {Light{1}, kLightTimer}},
         {Paused, Cancel{}, Idle, {Discard{}}},
         {Paused, Decoded{}, kNothing, none},
-        {Paused, scan_run::Failed{"broken"}, Broken, stops},
+        {Paused, scan_run::Failed{Fault::SkinGone}, Broken, stops},
         {Paused, TimedOut{}, kNothing, none},
 
         {Decoding, Start{3}, kNothing, none},
@@ -93,7 +95,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Decoding, Resume{}, kNothing, none},
         {Decoding, Cancel{}, Idle, {Discard{}}},
         {Decoding, Decoded{}, Done, none},
-        {Decoding, scan_run::Failed{"nothing seen"}, Broken, stops},
+        {Decoding, scan_run::Failed{Fault::NotDecoded}, Broken, stops},
         {Decoding, TimedOut{}, kNothing, none},
 
         {Done, Start{3}, Lighting, {Light{0}, kLightTimer}},
@@ -104,7 +106,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Done, Resume{}, kNothing, none},
         {Done, Cancel{}, Idle, none},
         {Done, Decoded{}, kNothing, none},
-        {Done, scan_run::Failed{"late"}, kNothing, none},
+        {Done, scan_run::Failed{Fault::SkinGone}, kNothing, none},
         {Done, TimedOut{}, kNothing, none},
 
         {Broken, Start{3}, Lighting, {Light{0}, kLightTimer}},
@@ -115,7 +117,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Broken, Resume{}, kNothing, none},
         {Broken, Cancel{}, Idle, none},
         {Broken, Decoded{}, kNothing, none},
-        {Broken, scan_run::Failed{"late"}, kNothing, none},
+        {Broken, scan_run::Failed{Fault::SkinGone}, kNothing, none},
         {Broken, TimedOut{}, kNothing, none},
     };
     static_assert(std::size(table) == pairs<Event>(Phase::Failed));
@@ -167,7 +169,6 @@ TEST(ScanRun, DecodesAfterTheLastPicture) {
 }
 
 TEST(ScanRun, GivesUpWhatDoesNotAnswerAfterSomeRepeats) {
-    std::set<std::string> reasons;
     for (const auto phase : {Lighting, Settling}) {
         ScanRun state = stateIn(phase);
         state.repeats = kOptions.maxRepeats - 1;
@@ -176,14 +177,12 @@ TEST(ScanRun, GivesUpWhatDoesNotAnswerAfterSomeRepeats) {
         const auto next = step(state, TimedOut{});
         EXPECT_EQ(next.state.phase, Phase::Failed);
         EXPECT_TRUE((next.effects == std::vector<Effect>{StopTimer{}, LightsOff{}, Discard{}}));
-        EXPECT_NE(next.state.why, "");
-        reasons.insert(next.state.why);
+        EXPECT_EQ(next.state.fault, phase == Lighting ? Fault::SkinSilent : Fault::CameraSilent);
         // The next frame and a break begin counting anew.
         EXPECT_EQ(step(stateIn(Settling), PictureTaken{2s}).state.repeats, 0);
         EXPECT_EQ(step(step(state, Pause{}).state, Resume{}).state.repeats, 0);
     }
-    EXPECT_EQ(reasons.size(), 2U);
-    EXPECT_EQ(step(stateIn(Decoding), scan_run::Failed{"nothing seen"}).state.why, "nothing seen");
+    EXPECT_EQ(step(stateIn(Decoding), scan_run::Failed{Fault::NotDecoded}).state.fault, Fault::NotDecoded);
 }
 
 TEST(ScanRun, ACameraHasItsTimeFromWhenTheLightShows) {
@@ -249,7 +248,7 @@ struct Bench {
         if (state.phase == Idle || state.phase == Phase::Failed) {
             EXPECT_FALSE(isHolding) << "not discarded";
         }
-        EXPECT_EQ(state.why.empty(), state.phase != Phase::Failed);
+        EXPECT_EQ(state.fault == Fault::None, state.phase != Phase::Failed);
         if (state.phase == Done) {
             EXPECT_EQ(kept.size(), state.frames);
             EXPECT_EQ(decoded, 1);
@@ -306,7 +305,7 @@ Event randomEvent(Random& random, const Bench& bench, Time now) {
     if (what < 0.09)
         return Decoded{};
     if (what < 0.095)
-        return scan_run::Failed{"broken"};
+        return scan_run::Failed{Fault::SkinGone};
     if (what < 0.15)
         return Start{random.index(6)};
     if (what < 0.45)

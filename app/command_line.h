@@ -34,6 +34,7 @@ void addReproducePaperCommand(CommandLine& line);
 void addAccuracyStudyCommand(CommandLine& line);
 void addDemoCommand(CommandLine& line);
 void addExploreCommand(CommandLine& line);
+void addRunCommand(CommandLine& line);
 void addVirtualSkinCommand(CommandLine& line);
 
 /// Prints "skincal: MESSAGE" to standard error and returns kBadInput.

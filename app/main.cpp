@@ -65,6 +65,7 @@ int runProgram(int argc, char** argv) {
     addReproducePaperCommand(line);
     addAccuracyStudyCommand(line);
     addExploreCommand(line);
+    addRunCommand(line);
     addVirtualSkinCommand(line);
     line.app.footer(
         "Start here:\n"

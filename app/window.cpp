@@ -14,6 +14,7 @@
 #include "ui/window/file_actions.h"
 #include "ui/window/main_window.h"
 #include "ui/window/rig_offers.h"
+#include "ui/window/skin_offers.h"
 
 namespace skincal {
 int runWindow(int argc, char** argv, const WindowOptions& options) {
@@ -37,6 +38,7 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
     window.setDark(!options.light);
     window.show();
     // After the window is there: asking all cameras what they can do takes its time.
+    const SkinOffers skins(workbench);
     const CameraOffers cameras(workbench, std::make_shared<CameraList>());
     const QString config = QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation);
     window.files().keepRecentIn(QDir(config).filePath(QStringLiteral("window.ini")));

@@ -47,6 +47,10 @@ ProtocolSkin::ProtocolSkin(LineAddress address, std::vector<ModuleTemplate> temp
         if (state_ == State::Open)
             emit lightShown(token);
     });
+    connect(worker_, &SkinWorker::cameBack, this, [this] {
+        if (state_ == State::Closed)
+            emit cameBack();
+    });
     connect(worker_, &SkinWorker::accelerationCame, this, &ProtocolSkin::emitAcceleration);
     connect(worker_, &SkinWorker::touchCame, this, &ProtocolSkin::emitTouch);
     thread_.setObjectName(QStringLiteral("skin"));

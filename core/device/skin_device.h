@@ -74,6 +74,8 @@ class SkinDevice : public QObject {
     void accelerationArrived(const skincal::AccelerationSample& sample);
     void tactileArrived(const skincal::TactileSample& sample);
     void lightShown(std::uint64_t token);
+    /// What had failed as it was unplugged is there again: open() may work now.
+    void cameBack();
 };
 
 }  // namespace skincal

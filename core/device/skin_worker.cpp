@@ -1,7 +1,10 @@
 #include "core/device/skin_worker.h"
 
+#include <QFileInfo>
 #include <QRandomGenerator>
 #include <algorithm>
+
+#include "core/device/serial_line.h"
 
 namespace skincal {
 namespace {
@@ -9,6 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kFlush = 20ms;
+constexpr auto kWatch = 500ms;
 constexpr auto kRestPeriod = 100ms;
 /// Of what the line carries, for streams: the rest is for lights and questions.
 constexpr double kStreamShare = 0.5;
@@ -41,10 +45,12 @@ QString wordsFor(SkinFault fault, const LineAddress& address) {
 
 }  // namespace
 
-SkinWorker::SkinWorker(LineAddress address) : address_(std::move(address)), timer_(this), flush_(this), silence_(this) {
+SkinWorker::SkinWorker(LineAddress address) : address_(std::move(address)), timer_(this), flush_(this), watch_(this) {
     timer_.setSingleShot(true);
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &SkinWorker::pump);
+    watch_.setInterval(kWatch);
+    connect(&watch_, &QTimer::timeout, this, &SkinWorker::watchPort);
     flush_.setInterval(kFlush);
     connect(&flush_, &QTimer::timeout, this, &SkinWorker::flushStreams);
 }
@@ -90,6 +96,7 @@ void SkinWorker::close() {
     }
     timer_.stop();
     flush_.stop();
+    watch_.stop();
     client_.reset();
     if (line_) {
         line_->disconnect(this);
@@ -103,6 +110,17 @@ void SkinWorker::close() {
 
 void SkinWorker::lose(LineFault fault, const QString& detail) {
     fail(lineHelp(fault, address_, detail));
+    if (fault == LineFault::Ended && address_.kind == LineAddress::Kind::Serial)
+        watch_.start();
+}
+
+void SkinWorker::watchPort() {
+    // Readable, too: udev sets permissions a moment after the port is there.
+    const QFileInfo port(SerialLine::fullPath(address_.target));
+    if (!port.isReadable() || !port.isWritable())
+        return;
+    watch_.stop();
+    emit cameBack();
 }
 
 void SkinWorker::fail(const QString& why) {

@@ -40,6 +40,8 @@ class SkinWorker : public QObject, private SkinListener {
     void numbersLost();
     void shown(quint64 token);
     void accelerationCame(const std::vector<skincal::RestReading>& readings, qint64 time_us);
+    /// The port that was lost is there again.
+    void cameBack();
     void touchCame(const std::vector<skincal::CellTouch>& touches, qint64 time_us);
 
   private:
@@ -63,13 +65,14 @@ class SkinWorker : public QObject, private SkinListener {
     void flushStreams();
     void fail(const QString& why);
     void lose(LineFault fault, const QString& detail);
+    void watchPort();
 
     LineAddress address_;
     std::unique_ptr<Line> line_;
     std::unique_ptr<SkinClient> client_;
     QTimer timer_;
     QTimer flush_;
-    QTimer silence_;
+    QTimer watch_;  ///< for a port that was lost
     bool exploring_ = false;
     bool streamsRest_ = false;
     bool streamsTouch_ = false;

@@ -5,7 +5,10 @@
 #include <QPushButton>
 #include <QSplitter>
 #include <QTableView>
+#include <algorithm>
 
+#include "ui/pages/address_dialog.h"
+#include "ui/presenters/skin_offer.h"
 #include "ui/widgets/network_view.h"
 
 namespace skincal {
@@ -26,8 +29,9 @@ ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWid
     auto* top = new QHBoxLayout;
     devices_->setAccessibleName(tr("Skin"));
     devices_->setToolTip(tr("The skin to calibrate"));
-    for (const auto& offer : workbench.skinOffers)
-        devices_->addItem(offer.name);
+    devices_->setObjectName(QStringLiteral("skins"));
+    devices_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+    devices_->setMinimumContentsLength(14);
     connect_->setObjectName(QStringLiteral("connect"));
     connect_->setProperty("primary", true);
     connect_->setToolTip(tr("Open the skin and explore its network"));
@@ -70,7 +74,10 @@ ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWid
     splitter->setChildrenCollapsible(false);
     body().addWidget(splitter, 1);
 
-    connect(devices_, &QComboBox::activated, this, [this](int offer) { presenter_.chooseDevice(offer); });
+    connect(devices_, &QComboBox::activated, this, &ConnectPage::chooseDevice);
+    connect(&workbench, &Workbench::skinOffersChanged, this, &ConnectPage::listDevices);
+    connect(&workbench, &Workbench::skinChosen, this,
+            [this] { devices_->setCurrentIndex(std::max(workbench_.chosenSkin(), 0)); });
     connect(connect_, &QPushButton::clicked, this, [this] {
         const bool isBusy = presenter_.state().phase == Connection::Phase::Opening ||
                             presenter_.state().phase == Connection::Phase::Exploring;
@@ -89,8 +96,54 @@ ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWid
     connect(callNeighbours_, &QPushButton::clicked, this, [this] { overruleSelected(LinkKind::Adjacent); });
     connect(askData_, &QPushButton::clicked, this, [this] { overruleSelected(std::nullopt); });
     connect(links_->selectionModel(), &QItemSelectionModel::selectionChanged, this, &ConnectPage::refresh);
+    listDevices();
     showNetwork();
     refresh();
+}
+
+void ConnectPage::listDevices() {
+    devices_->clear();
+    for (const auto& offer : workbench_.skinOffers) {
+        devices_->addItem(offer.name);
+        devices_->setItemData(devices_->count() - 1, offer.description, Qt::ToolTipRole);
+    }
+    devices_->insertSeparator(devices_->count());
+    devices_->addItem(tr("Another address …"));
+    devices_->setItemData(devices_->count() - 1, tr("Another speed, a gateway in the network, a bridge"),
+                          Qt::ToolTipRole);
+    devices_->setCurrentIndex(std::max(workbench_.chosenSkin(), 0));
+}
+
+void ConnectPage::chooseDevice(int offer) {
+    if (offer < static_cast<int>(workbench_.skinOffers.size())) {
+        presenter_.chooseDevice(offer);
+        return;
+    }
+    devices_->setCurrentIndex(std::max(workbench_.chosenSkin(), 0));
+    askForAddress();
+}
+
+void ConnectPage::askForAddress() {
+    auto* dialog = new AddressDialog(this);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    connect(dialog, &QDialog::accepted, this, [this, dialog] {
+        if (const auto address = dialog->address())
+            useAddress(*address);
+    });
+    dialog->open();
+}
+
+void ConnectPage::useAddress(const LineAddress& address) {
+    Offer<SkinDevice> typed = offerOfAddress(address, workbench_.moduleTypes);
+    auto offers = workbench_.skinOffers;
+    const auto known =
+        std::find_if(offers.begin(), offers.end(), [&](const auto& offer) { return offer.key == typed.key; });
+    const auto index = static_cast<int>(known - offers.begin());
+    if (known == offers.end()) {
+        offers.push_back(std::move(typed));
+        workbench_.setSkinOffers(std::move(offers));
+    }
+    presenter_.chooseDevice(index);
 }
 
 void ConnectPage::refresh() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/device/line_address.h"
 #include "ui/pages/page.h"
 #include "ui/presenters/connect_presenter.h"
 
@@ -16,12 +17,18 @@ class ConnectPage : public Page {
   public:
     ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWidget* parent = nullptr);
 
+    /// Puts it among the devices, where it is not there yet, and chooses it.
+    void useAddress(const LineAddress& address);
+
   signals:
     void moduleSelected(skincal::ModuleId module);
 
   private:
     void refresh();
     void showNetwork();
+    void listDevices();
+    void chooseDevice(int offer);
+    void askForAddress();
     void overruleSelected(std::optional<LinkKind> kind);
 
     Workbench& workbench_;

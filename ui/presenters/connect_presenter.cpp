@@ -121,6 +121,10 @@ void ConnectPresenter::attachDevice() {
         deviceSays_ = why;
         handle(connection::Failed{});
     });
+    connect(device, &SkinDevice::cameBack, this, [this] {
+        if (state_.phase == Connection::Phase::Lost)
+            connectSkin();
+    });
     connect(device, &SkinDevice::moduleFound, this, [this](ModuleId module) {
         found_.push_back(module);
         handle(connection::ModuleFound{});
@@ -144,6 +148,7 @@ void ConnectPresenter::handle(const connection::Event& event) {
                        [&](connection::CloseDevice) { device->close(); },
                        [&](connection::Explore) {
                            found_.clear();
+                           device->remember(workbench_.session().measured().skin);
                            device->explore();
                        },
                        [&](const StartTimer& timer) { timer_.start(timer.after); }, [&](StopTimer) { timer_.stop(); }},

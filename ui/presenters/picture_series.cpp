@@ -49,6 +49,8 @@ void PictureSeries::start(LitSets lit) {
     pictures_ = std::make_shared<Pictures>(lit_.size());
     frames_.assign(lit_.size(), {});
     began_ = Clock::now();
+    if (workbench_.skin() != nullptr)
+        workbench_.skin()->prepare(lit_);
     handle(scan_run::Start{lit_.size()});
 }
 

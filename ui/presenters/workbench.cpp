@@ -17,16 +17,32 @@ void Workbench::chooseCamera(std::size_t offer) {
     emit cameraChosen();
 }
 
+namespace {
+
+/// Where the chosen one is among other offers, -1 where it is not.
+template <class Device>
+int placeAmong(const std::vector<Offer<Device>>& offers, const std::vector<Offer<Device>>& before, int chosen) {
+    if (chosen < 0)
+        return -1;
+    const Offer<Device>& one = before.at(static_cast<std::size_t>(chosen));
+    const auto found = std::find_if(offers.begin(), offers.end(), [&](const auto& offer) {
+        return offer.key == one.key && (!offer.key.isEmpty() || offer.name == one.name);
+    });
+    return found == offers.end() ? -1 : static_cast<int>(found - offers.begin());
+}
+
+}  // namespace
+
 void Workbench::setCameraOffers(std::vector<Offer<FrameSource>> offers) {
-    if (chosenCamera_ >= 0) {
-        const auto& chosen = cameraOffers.at(static_cast<std::size_t>(chosenCamera_));
-        const auto found = std::find_if(offers.begin(), offers.end(), [&](const auto& offer) {
-            return offer.key == chosen.key && (!offer.key.isEmpty() || offer.name == chosen.name);
-        });
-        chosenCamera_ = found == offers.end() ? -1 : static_cast<int>(found - offers.begin());
-    }
+    chosenCamera_ = placeAmong(offers, cameraOffers, chosenCamera_);
     cameraOffers = std::move(offers);
     emit cameraOffersChanged();
+}
+
+void Workbench::setSkinOffers(std::vector<Offer<SkinDevice>> offers) {
+    chosenSkin_ = placeAmong(offers, skinOffers, chosenSkin_);
+    skinOffers = std::move(offers);
+    emit skinOffersChanged();
 }
 
 void Workbench::setSkinReady(bool ready) {

@@ -53,6 +53,8 @@ class Workbench : public QObject {
 
     [[nodiscard]] Session& session() { return session_; }
 
+    /// Of all modules that a real skin may have.
+    std::vector<ModuleTemplate> moduleTypes{paperHexagon(), triangleTemplate(), rectangleTemplate()};
     std::vector<Offer<SkinDevice>> skinOffers;
     std::vector<Offer<FrameSource>> cameraOffers;
     std::optional<RigHands> hands;
@@ -65,6 +67,8 @@ class Workbench : public QObject {
     /// Other cameras can be chosen from now on. The chosen one stays chosen, found by its key, or by its name
     /// where it has none.
     void setCameraOffers(std::vector<Offer<FrameSource>> offers);
+    /// The same with skins.
+    void setSkinOffers(std::vector<Offer<SkinDevice>> offers);
     [[nodiscard]] int chosenSkin() const { return chosenSkin_; }
     [[nodiscard]] int chosenCamera() const { return chosenCamera_; }
 
@@ -80,6 +84,7 @@ class Workbench : public QObject {
     void skinChosen();
     void cameraChosen();
     void cameraOffersChanged();
+    void skinOffersChanged();
     void skinReadyChanged(bool ready);
     /// Somebody blinks an LED for a moment.
     void lightsClaimed();

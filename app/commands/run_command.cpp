@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+
+#include <QFileInfo>
+#include <QGuiApplication>
+#include <csignal>
+
+#include "app/command_line.h"
+#include "app/guided_run.h"
+#include "app/known_templates.h"
+#include "app/outcome.h"
+#include "app/quality_table.h"
+#include "core/camera/media_source.h"
+#include "core/camera/webcam_source.h"
+#include "core/formats/body_json.h"
+#include "core/formats/camera_file.h"
+#include "core/formats/files.h"
+#include "core/formats/recording.h"
+#include "core/workflow/calibrate.h"
+#include "ui/presenters/skin_offer.h"
+
+namespace skincal {
+namespace {
+
+struct RunArguments {
+    std::string device;
+    std::string camera;
+    std::string intrinsics;
+    std::filesystem::path output;
+    std::filesystem::path body;
+    std::vector<std::filesystem::path> templates;
+    GuidedRunOptions options;
+    std::string onPose;
+    std::string onView;
+    bool force = false;
+    bool json = false;
+};
+
+std::string listed(const CameraList& list) {
+    std::string text;
+    for (const ListedCamera& camera : list.cameras())
+        text += fmt::format("\n  \"{}\"{}", camera.description, camera.node.empty() ? "" : " at " + camera.node);
+    return text.empty() ? " no webcam is plugged in" : text;
+}
+
+/// A webcam by its name or node, else a video or stream.
+tl::expected<Offer<FrameSource>, std::string> cameraAt(const std::string& text,
+                                                       const std::shared_ptr<CameraList>& list) {
+    for (const ListedCamera& camera : list->cameras())
+        if (camera.description == text || camera.node == text)
+            return Offer<FrameSource>{QString::fromStdString(text), {}, [list, camera] {
+                                          return std::make_unique<WebcamSource>(list, camera);
+                                      }};
+    const auto url = videoUrl(QString::fromStdString(text));
+    const bool isThere = url && (!url->isLocalFile() || QFileInfo::exists(url->toLocalFile()));
+    if (!isThere)
+        return tl::unexpected("there is no camera \"" + text + "\"; these are:" + listed(*list));
+    return Offer<FrameSource>{
+        QString::fromStdString(text), {}, [url = *url] { return std::make_unique<MediaSource>(url); }};
+}
+
+/// Waits so long for the first camera to be listed: asking all of them takes its time.
+void waitForCameras(const CameraList& list) {
+    QTimer patience;
+    patience.setSingleShot(true);
+    patience.start(3000);
+    while (list.cameras().empty() && patience.isActive())
+        QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
+}
+
+int calibrateRecording(const RunArguments& arguments) {
+    const auto recording = readRecording(arguments.output);
+    if (!recording)
+        return badInput(recording.error().message());
+    tl::expected<BodyModel, CalibrateError> body;
+    {
+        TerminalProgress progress;
+        body = calibrate(*recording, framesOf(arguments.output, *recording), {}, progress.context());
+    }
+    if (!body)
+        return reportFailure(body.error());
+    auto digests = digestRecording(arguments.output, *recording);
+    if (!digests)
+        return badInput(digests.error().message());
+    body->generator.recording_sha256 = std::move(*digests);
+    if (const auto written = writeBody(*body, arguments.body, recording->unknownOfTypes); !written)
+        return badInput(written.error().message());
+    if (arguments.json) {
+        auto json = qualityJson(*body);
+        json["output"] = arguments.body.string();
+        printJson(json);
+    } else {
+        fmt::print("{}", qualityTable(*body, {{"recording", arguments.output.string()},
+                                              {"body model", arguments.body.string()}}));
+    }
+    return exitCodeOf(*body);
+}
+
+int runGuided(RunArguments arguments) {
+    const auto address = parseLineAddress(QString::fromStdString(arguments.device));
+    if (!address)
+        return badInput(address.error().toStdString());
+    const auto templates = knownTemplates(arguments.templates);
+    if (!templates)
+        return badInput(templates.error().message());
+    if (std::filesystem::exists(arguments.output / "recording.json") && !arguments.force)
+        return badInput(arguments.output.string() + " holds a recording already: --force replaces it");
+    if (arguments.body.empty()) {
+        arguments.body = arguments.output;
+        arguments.body.replace_extension(".body.json");
+    }
+    if (!arguments.force) {
+        if (const auto complaint = complaintAboutExisting(arguments.body))
+            return badInput(*complaint);
+    }
+    std::optional<CameraModel> lens;
+    if (arguments.options.views > 0) {
+        const auto read = readCameraModel(arguments.intrinsics);
+        if (!read)
+            return badInput(read.error().message());
+        lens = *read;
+    }
+
+    prepareMultimedia();
+    if (qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM"))
+        qputenv("QT_QPA_PLATFORM", "offscreen");
+    int argc = 1;
+    std::array<char, 8> name{"skincal"};
+    std::array<char*, 2> argv{name.data(), nullptr};
+    QGuiApplication application(argc, argv.data());
+    Workbench workbench;
+    workbench.moduleTypes = *templates;
+    workbench.skinOffers.push_back(offerOfAddress(*address, *templates));
+    if (arguments.options.views > 0) {
+        const auto list = std::make_shared<CameraList>();
+        waitForCameras(*list);
+        auto camera = cameraAt(arguments.camera, list);
+        if (!camera)
+            return badInput(camera.error());
+        workbench.cameraOffers.push_back(std::move(*camera));
+        workbench.session().decide({}, [&](Decisions& decisions) { decisions.camera = lens; });
+    }
+    arguments.options.directory = QString::fromStdString(arguments.output.string());
+    arguments.options.onPose = QString::fromStdString(arguments.onPose);
+    arguments.options.onView = QString::fromStdString(arguments.onView);
+    std::optional<QString> why;
+    {
+        GuidedRun run(workbench, arguments.options);
+        QObject::connect(&run, &GuidedRun::finished, &application, [&](const QString& reason) {
+            why = reason;
+            QCoreApplication::quit();
+        });
+        std::signal(SIGINT, [](int) { QCoreApplication::quit(); });
+        std::signal(SIGTERM, [](int) { QCoreApplication::quit(); });
+        run.begin();
+        QCoreApplication::exec();
+    }
+    if (!why)
+        return dataDoNotSuffice("interrupted; what was measured is in " + arguments.output.string());
+    if (!why->isEmpty())
+        return badInput(why->toStdString());
+    return calibrateRecording(arguments);
+}
+
+}  // namespace
+
+void addRunCommand(CommandLine& line) {
+    auto arguments = std::make_shared<RunArguments>();
+    CLI::App* command = line.app.add_subcommand(
+        "run", "Calibrate a skin from start to end without a window: connect, poses, views, body model");
+    command->add_option("--device", arguments->device, "The skin's address, see \"skincal explore --help\"")
+        ->required();
+    command->add_option("--camera", arguments->camera,
+                        "Name or node (/dev/video0) of a webcam, a video file or the address of a stream");
+    command->add_option("--intrinsics", arguments->intrinsics,
+                        "The camera's lens: ROS camera_info, OpenCV or Kalibr, YAML or XML");
+    command->add_option("-o,--output", arguments->output, "The recording, a directory *.skinrec")->required();
+    command->add_option("--body", arguments->body, "The body model [the output with .body.json]");
+    command->add_option("--template", arguments->templates, "Module templates of your own (JSON)");
+    command->add_option("--poses", arguments->options.poses, "How many gravity poses")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command->add_option("--views", arguments->options.views, "How many views; 0: none, and no camera")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    command->add_option("--on-pose", arguments->onPose,
+                        "Shell command that turns the body, run before each pose but the first");
+    command->add_option("--on-view", arguments->onView,
+                        "Shell command that moves the camera, run before each view but the first");
+    command->add_flag("--force", arguments->force, "Replace what is there");
+    command->add_flag("--json", arguments->json, "Print the result as JSON");
+    command->footer(
+        "Without commands it says what to do, and waits: for a pose until the body rests, for a view until Enter is\n"
+        "pressed. Commands get SKINCAL_POSE or SKINCAL_VIEW (from 0), and SKINCAL_UP, the direction of module\n"
+        "SKINCAL_MODULE that should point up. Everything is written to the recording as soon as it is measured.\n"
+        "Exit codes: 0 done; 1 the data do not suffice, or interrupted; 2 bad input, or skin or camera failed.");
+    command->callback([&line, arguments] { line.run = [arguments] { return runGuided(*arguments); }; });
+}
+
+}  // namespace skincal

@@ -1,0 +1,216 @@
+#include "app/guided_run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <QProcess>
+#include <algorithm>
+#include <cstdio>
+
+namespace skincal {
+namespace {
+
+constexpr int kScanTries = 3;
+
+QString numbers(const Vector3d& v) {
+    return QStringLiteral("%1 %2 %3").arg(v.x()).arg(v.y()).arg(v.z());
+}
+
+}  // namespace
+
+GuidedRun::GuidedRun(Workbench& workbench, GuidedRunOptions options)
+    : workbench_(workbench),
+      options_(std::move(options)),
+      connect_(workbench),
+      poses_(workbench),
+      scan_(workbench),
+      input_(fileno(stdin), QSocketNotifier::Read),
+      patience_(this) {
+    input_.setEnabled(false);
+    patience_.setSingleShot(true);
+    connect(&patience_, &QTimer::timeout, this, [this] {
+        stop(step_ == Step::Posing ? QStringLiteral("the body did not come to rest in a new pose")
+                                   : QStringLiteral("the camera gave no pictures"));
+    });
+    connect(&input_, &QSocketNotifier::activated, this, [this] {
+        std::array<char, 256> bytes{};
+        const auto count = ::read(fileno(stdin), bytes.data(), bytes.size());
+        if (count <= 0)
+            return stop(QStringLiteral("nobody is at the keyboard: give --on-pose and --on-view"));
+        if (std::find(bytes.begin(), bytes.begin() + count, '\n') == bytes.begin() + count)
+            return;
+        input_.setEnabled(false);
+        if (const auto then = std::exchange(afterEnter_, {}))
+            then();
+    });
+    connect(&connect_, &ConnectPresenter::stateChanged, this, [this] {
+        using Phase = Connection::Phase;
+        const Phase phase = connect_.state().phase;
+        if (phase == Phase::Connected && step_ == Step::Connecting)
+            connected();
+        else if (phase == Phase::Lost && step_ == Step::Connecting)
+            stop(connect_.why());
+        else if (phase == Phase::Lost && step_ != Step::Done)
+            say(connect_.why() + QStringLiteral(": waiting until it is there again"));
+    });
+    connect(&poses_, &PosePresenter::captured, this, &GuidedRun::poseCaptured);
+    connect(&scan_, &ScanPresenter::scanned, this, &GuidedRun::viewScanned);
+    connect(&scan_, &ScanPresenter::pictureChanged, this, [this] {
+        if (step_ == Step::Camera && scan_.obstacle().isEmpty()) {
+            patience_.stop();
+            step_ = Step::Scanning;
+            nextView();
+        }
+    });
+    connect(&scan_, &ScanPresenter::cameraFailed, this, [this](const QString& why) {
+        if (step_ == Step::Camera)
+            stop(why);
+    });
+    connect(&scan_, &ScanPresenter::stateChanged, this, [this] {
+        if (step_ != Step::Scanning || scan_.state().phase != ScanRun::Phase::Failed)
+            return;
+        const QString why = scan_.why();
+        if (++tries_ == kScanTries)
+            return stop(QStringLiteral("the scan failed: ") + why);
+        say(QStringLiteral("The scan failed: %1. Again.").arg(why));
+        QTimer::singleShot(2000, this, [this] { startScan(); });
+    });
+    connect(&workbench.session(), &Session::fileFailed, this, &GuidedRun::stop);
+    connect(&workbench.session(), &Session::saved, this, [this] {
+        if (step_ == Step::Done && !workbench_.session().isModified())
+            emit finished({});
+    });
+}
+
+void GuidedRun::say(const QString& text) const {
+    fmt::print("{}\n", text.toStdString());
+    std::fflush(stdout);
+}
+
+void GuidedRun::stop(const QString& why) {
+    if (step_ == Step::Done)
+        return;
+    step_ = Step::Done;
+    patience_.stop();
+    poses_.setActive(false);
+    scan_.setActive(false);
+    emit finished(why);
+}
+
+void GuidedRun::begin() {
+    say(QStringLiteral("Connecting to %1").arg(workbench_.skinOffers.front().name));
+    workbench_.chooseSkin(0);
+    connect_.connectSkin();
+}
+
+void GuidedRun::connected() {
+    const Skin& skin = workbench_.session().measured().skin;
+    say(QStringLiteral("%1 modules, %2 links").arg(skin.modules.size()).arg(skin.links.size()));
+    save();
+    step_ = Step::Posing;
+    poses_.setAutomatic(true);
+    poses_.setActive(true);
+    say(QStringLiteral("Pose 1 of %1: let the body rest").arg(options_.poses));
+    patience_.start(options_.patience);
+}
+
+void GuidedRun::nextPose() {
+    std::vector<std::pair<QString, QString>> environment{{QStringLiteral("SKINCAL_POSE"), QString::number(captured_)}};
+    if (const auto target = poses_.target(); target && poses_.reference()) {
+        environment.emplace_back(QStringLiteral("SKINCAL_UP"), numbers(*target));
+        environment.emplace_back(QStringLiteral("SKINCAL_MODULE"), QString::number(poses_.reference()->value));
+    }
+    say(QStringLiteral("Pose %1 of %2: turn the body over and let it rest").arg(captured_ + 1).arg(options_.poses));
+    if (!options_.onPose.isEmpty())
+        prepare(options_.onPose, {}, std::move(environment), [this] { patience_.start(options_.patience); });
+}
+
+void GuidedRun::poseCaptured(int /*pose*/) {
+    if (step_ != Step::Posing)
+        return;
+    patience_.stop();
+    save();
+    if (++captured_ < options_.poses) {
+        nextPose();
+        return;
+    }
+    poses_.setActive(false);
+    step_ = Step::Camera;
+    if (options_.views == 0) {
+        step_ = Step::Done;
+        save();
+        return;
+    }
+    say(QStringLiteral("Starting the camera"));
+    patience_.start(options_.patience);
+    workbench_.chooseCamera(0);
+    scan_.setActive(true);
+}
+
+void GuidedRun::nextView() {
+    tries_ = 0;
+    if (scanned_ == 0)
+        return startScan();
+    const QString request =
+        QStringLiteral(
+            "View %1 of %2: move the camera so that it sees modules of the last view and new ones, and press "
+            "Enter")
+            .arg(scanned_ + 1)
+            .arg(options_.views);
+    prepare(options_.onView, request, {{QStringLiteral("SKINCAL_VIEW"), QString::number(scanned_)}},
+            [this] { startScan(); });
+}
+
+void GuidedRun::startScan() {
+    if (step_ != Step::Scanning)
+        return;
+    say(QStringLiteral("View %1 of %2: scanning").arg(scanned_ + 1).arg(options_.views));
+    scan_.start();
+}
+
+void GuidedRun::viewScanned(const std::string& view) {
+    const ScannedView* scanned = workbench_.session().findView(view);
+    const std::size_t found = scanned == nullptr ? 0 : scanned->decoded.found.size();
+    say(QStringLiteral("View %1 of %2: %3 modules found").arg(scanned_ + 1).arg(options_.views).arg(found));
+    ++scanned_;
+    if (scanned_ == options_.views) {
+        scan_.setActive(false);
+        step_ = Step::Done;
+    }
+    save();
+    if (step_ != Step::Done)
+        nextView();
+}
+
+void GuidedRun::save() {
+    workbench_.session().save(options_.directory);
+}
+
+void GuidedRun::prepare(const QString& command, const QString& request,
+                        std::vector<std::pair<QString, QString>> environment, std::function<void()> then) {
+    if (command.isEmpty()) {
+        say(request);
+        afterEnter_ = std::move(then);
+        input_.setEnabled(true);
+        return;
+    }
+    auto* process = new QProcess(this);
+    QProcessEnvironment variables = QProcessEnvironment::systemEnvironment();
+    for (const auto& [name, value] : environment)
+        variables.insert(name, value);
+    process->setProcessEnvironment(variables);
+    process->setProcessChannelMode(QProcess::ForwardedChannels);
+    connect(process, &QProcess::errorOccurred, this,
+            [this, command] { stop(QStringLiteral("\"%1\" could not be run").arg(command)); });
+    connect(process, &QProcess::finished, this,
+            [this, process, command, then = std::move(then)](int code, QProcess::ExitStatus status) {
+                process->deleteLater();
+                if (status != QProcess::NormalExit || code != 0)
+                    stop(QStringLiteral("\"%1\" failed with exit code %2").arg(command).arg(code));
+                else
+                    then();
+            });
+    process->start(QStringLiteral("/bin/sh"), {QStringLiteral("-c"), command});
+}
+
+}  // namespace skincal

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <QObject>
+#include <QSocketNotifier>
+#include <QTimer>
+#include <optional>
+
+#include "ui/presenters/connect_presenter.h"
+#include "ui/presenters/pose_presenter.h"
+#include "ui/presenters/scan_presenter.h"
+
+namespace skincal {
+
+struct GuidedRunOptions {
+    int poses = 8;
+    int views = 4;
+    QString directory;                   ///< of the recording
+    QString onPose;                      ///< shell command that turns the body; empty: a person does
+    QString onView;                      ///< shell command that moves the camera; empty: a person does
+    std::chrono::seconds patience{120};  ///< for a step that a command prepares
+};
+
+/// The guided procedure without a window: connect, poses, views, each written to the recording as soon as it is there.
+/// It drives the presenters that the window's pages show; lines on standard output say what is going on and what a
+/// person has to do, Enter says that it is done.
+///
+/// Commands run before each pose and view but the first, with SKINCAL_POSE or SKINCAL_VIEW set to its number from 0 on,
+/// and SKINCAL_UP to where up should point, in the frame of the module SKINCAL_MODULE ("x y z").
+class GuidedRun : public QObject {
+    Q_OBJECT
+  public:
+    GuidedRun(Workbench& workbench, GuidedRunOptions options);
+
+    void begin();
+
+  signals:
+    /// @param why  empty where all was measured and is in the recording
+    void finished(const QString& why);
+
+  private:
+    enum class Step { Connecting, Posing, Camera, Scanning, Done };
+
+    void connected();
+    void nextPose();
+    void poseCaptured(int pose);
+    void nextView();
+    void startScan();
+    void viewScanned(const std::string& view);
+    void save();
+    void stop(const QString& why);
+    void say(const QString& text) const;
+    /// `then` once the command has ended well, or a person has pressed Enter.
+    void prepare(const QString& command, const QString& request, std::vector<std::pair<QString, QString>> environment,
+                 std::function<void()> then);
+
+    Workbench& workbench_;
+    GuidedRunOptions options_;
+    ConnectPresenter connect_;
+    PosePresenter poses_;
+    ScanPresenter scan_;
+    Step step_ = Step::Connecting;
+    int captured_ = 0;
+    int scanned_ = 0;
+    int tries_ = 0;  ///< of the scan of this view
+    std::function<void()> afterEnter_;
+    QSocketNotifier input_;
+    QTimer patience_;
+};
+
+}  // namespace skincal

@@ -1,0 +1,205 @@
+// The whole product on real interfaces: a virtual skin behind a pseudo-terminal, a virtual webcam through GStreamer and
+// Qt Multimedia, and the program that calibrates one with the other, without a window.
+
+#include <gtest/gtest.h>
+
+#include <QCoreApplication>
+#include <QDir>
+#include <QFile>
+#include <QProcess>
+#include <QTemporaryDir>
+#include <mutex>
+
+#include "core/estimation/compare.h"
+#include "core/formats/body_json.h"
+#include "core/formats/camera_file.h"
+#include "core/rig/pseudo_terminal.h"
+#include "core/rig/wired_skin.h"
+#include "core/simulation/renderer.h"
+#include "tests/fixtures/virtual_camera/virtual_camera.h"
+#include "tests/wait_for.h"
+
+namespace skincal {
+namespace {
+
+using test::VirtualCamera;
+using test::waitFor;
+
+constexpr auto kCameraName = "Webcam on the desk";
+
+/// Skin, body and camera on a desk, and somebody who does what files in a folder ask for.
+class DeskWithWires {
+  public:
+    explicit DeskWithWires(const char* scenario, const WireFaults& faults = {})
+        : rig_(*findScenario(scenario), 5), skin_(rig_, faults) {
+        rig_.setCameraLatency(std::chrono::milliseconds(0));
+        const CameraModel& lens = rig_.world().scenario.camera;
+        seen_.T_r_v = rig_.cameraPose();
+        renderer_ = std::make_unique<FrameRenderer>(rig_.world(), seen_.T_r_v, 0, 200);
+        camera_ = std::make_unique<VirtualCamera>(kCameraName, VirtualCamera::Kind{"i420", lens.width, lens.height, 20},
+                                                  [this](std::uint64_t k) { return paint(k); });
+        camera_->plug();
+        EXPECT_EQ(terminal_.open(), QString());
+        QObject::connect(&terminal_, &PseudoTerminal::received, &skin_, &WiredSkin::receive);
+        QObject::connect(&skin_, &WiredSkin::sent, &terminal_, &PseudoTerminal::write);
+        look_.setInterval(10);
+        QObject::connect(&look_, &QTimer::timeout, &rig_, [this] { look(); });
+        look_.start();
+        EXPECT_TRUE(writeCameraModel(lensFile().toStdString(), lens));
+    }
+
+    [[nodiscard]] QString port() const { return terminal_.name(); }
+    [[nodiscard]] QString lensFile() const { return file("lens.yaml"); }
+    [[nodiscard]] QString file(const char* name) const { return QDir(folder_.path()).filePath(QLatin1String(name)); }
+    [[nodiscard]] SimulatedRig& rig() { return rig_; }
+    [[nodiscard]] WiredSkin& skin() { return skin_; }
+
+    /// Runs the program until it ends; its exit code.
+    int run(const QStringList& arguments) {
+        QProcess program;
+        program.setProcessChannelMode(QProcess::MergedChannels);
+        program.start(QStringLiteral(SKINCAL_PROGRAM), arguments);
+        const bool ended = waitFor([&] { return program.state() == QProcess::NotRunning; });
+        output = program.readAll().toStdString();
+        if (!ended)
+            program.kill();
+        program.waitForFinished();
+        return ended && program.exitStatus() == QProcess::NormalExit ? program.exitCode() : -1;
+    }
+
+    std::string output;
+
+  private:
+    struct Seen {
+        Isometry3d T_r_v = Isometry3d::Identity();
+        std::vector<LitModule> lit;
+    };
+
+    std::vector<std::uint8_t> paint(std::uint64_t k) {
+        Seen seen;
+        {
+            const std::scoped_lock lock(mutex_);
+            seen = seen_;
+        }
+        if (!seen.T_r_v.isApprox(drawn_)) {
+            renderer_->moveCamera(seen.T_r_v);
+            drawn_ = seen.T_r_v;
+        }
+        const cv::Mat picture = renderer_->render(seen.lit, k % 200);
+        return test::bytesOf("i420", picture.cols, picture.rows,
+                             {picture.begin<std::uint8_t>(), picture.end<std::uint8_t>()});
+    }
+
+    /// A number in a file, where somebody has written a new one.
+    [[nodiscard]] std::optional<int> asked(const char* name, int& last) const {
+        QFile text(file(name));
+        if (!text.open(QIODevice::ReadOnly))
+            return std::nullopt;
+        bool fine = false;
+        const int number = text.readAll().trimmed().toInt(&fine);
+        if (!fine || number == last)
+            return std::nullopt;
+        last = number;
+        return number;
+    }
+
+    void look() {
+        if (const auto pose = asked("pose", pose_)) {
+            Random chance(static_cast<std::uint64_t>(*pose), "poses of the desk");
+            rig_.turnBody(chance.rotation() * Vector3d::UnitZ());
+        }
+        if (const auto view = asked("view", view_))
+            rig_.moveCamera(rig_.suggestedViews().at(static_cast<std::size_t>(*view) % rig_.suggestedViews().size()));
+        const std::scoped_lock lock(mutex_);
+        seen_.T_r_v = rig_.cameraPose();
+        seen_.lit = rig_.litAt(rig_.now());
+    }
+
+    QTemporaryDir folder_;
+    SimulatedRig rig_;
+    WiredSkin skin_;
+    PseudoTerminal terminal_;
+    QTimer look_;
+    std::mutex mutex_;
+    Seen seen_;
+    Isometry3d drawn_ = Isometry3d::Identity();
+    std::unique_ptr<FrameRenderer> renderer_;
+    int pose_ = -1;
+    int view_ = -1;
+    std::unique_ptr<VirtualCamera> camera_;  // last: its thread paints
+};
+
+BodyComparison differenceFromTruth(const BodyModel& body, DeskWithWires& desk) {
+    // Numbers are the network's; unique ids say who is who.
+    const World& world = desk.rig().world();
+    std::map<std::string, std::size_t> places;
+    for (std::size_t i = 0; i < world.T_r_u.size(); ++i)
+        places[desk.skin().network().uniqueId(i)] = i;
+    std::vector<NamedPose> found;
+    std::vector<NamedPose> real;
+    const auto recording = readRecording(desk.file("desk.skinrec").toStdString());
+    EXPECT_TRUE(recording);
+    std::map<ModuleId, std::size_t> placeOf;
+    for (const SkinModule& module : recording->skin.modules)
+        placeOf[module.id] = places.at(module.uniqueId);
+    for (const BodyModule& module : body.modules) {
+        if (!module.T_body_module)
+            continue;
+        found.push_back({module.id, *module.T_body_module});
+        real.push_back({module.id, world.T_r_u[placeOf.at(module.id)]});
+    }
+    const auto difference = compareBodies(found, real);
+    EXPECT_TRUE(difference);
+    return difference.value_or(BodyComparison{});
+}
+
+TEST(GuidedRun, CalibratesASkinThroughASerialPortAndAWebcam) {
+    DeskWithWires desk("coded");
+    const int code = desk.run({"run", "--device", desk.port(), "--camera", kCameraName, "--intrinsics", desk.lensFile(),
+                               "-o", desk.file("desk.skinrec"), "--poses", "6", "--views", "3", "--on-pose",
+                               QStringLiteral("echo $SKINCAL_POSE > %1").arg(desk.file("pose")), "--on-view",
+                               QStringLiteral("echo $SKINCAL_VIEW > %1; sleep 2").arg(desk.file("view"))});
+    EXPECT_EQ(code, 0) << desk.output;
+    const auto body = readBody(desk.file("desk.body.json").toStdString());
+    ASSERT_TRUE(body) << desk.output;
+    const BodyComparison difference = differenceFromTruth(*body, desk);
+    EXPECT_EQ(difference.compared, desk.rig().world().T_r_u.size());
+    EXPECT_LT(difference.positionRms, 1e-3) << desk.output;
+}
+
+TEST(GuidedRun, OnABadWireItIsTheSame) {
+    WireFaults faults;
+    faults.byteErrors = 1e-3;
+    DeskWithWires desk("coded", faults);
+    const int code =
+        desk.run({"run", "--device", desk.port(), "--views", "0", "-o", desk.file("desk.skinrec"), "--poses", "5",
+                  "--on-pose", QStringLiteral("echo $SKINCAL_POSE > %1").arg(desk.file("pose"))});
+    EXPECT_NE(code, 2) << desk.output;
+    EXPECT_NE(code, -1) << desk.output;
+    const auto recording = readRecording(desk.file("desk.skinrec").toStdString());
+    ASSERT_TRUE(recording) << desk.output;
+    EXPECT_EQ(recording->skin.modules.size(), desk.rig().world().T_r_u.size());
+    EXPECT_EQ(recording->skin.links.size(), desk.rig().world().skin.links.size());
+    EXPECT_EQ(recording->gravity.size(), 5 * desk.rig().world().T_r_u.size());
+}
+
+TEST(GuidedRun, SaysWhatIsMissing) {
+    DeskWithWires desk("coded");
+    const QStringList common{"run", "-o", desk.file("desk.skinrec"), "--intrinsics", desk.lensFile()};
+    EXPECT_EQ(desk.run(common + QStringList{"--device", "/dev/ttyNOSUCH", "--camera", kCameraName}), 2);
+    EXPECT_NE(desk.output.find("plugged in"), std::string::npos) << desk.output;
+    EXPECT_EQ(desk.run(common + QStringList{"--device", desk.port(), "--camera", "Nobody's webcam"}), 2);
+    EXPECT_NE(desk.output.find(kCameraName), std::string::npos) << desk.output;
+    EXPECT_EQ(desk.run(common + QStringList{"--device", "tcp://nowhere", "--camera", kCameraName}), 2);
+    EXPECT_NE(desk.output.find("tcp://host:port"), std::string::npos) << desk.output;
+}
+
+}  // namespace
+}  // namespace skincal
+
+int main(int argc, char** argv) {
+    testing::InitGoogleTest(&argc, argv);
+    const auto cameras = skincal::test::prepareVirtualCameras();
+    const QCoreApplication application(argc, argv);
+    return RUN_ALL_TESTS();
+}

@@ -2,20 +2,24 @@
 
 #include <QComboBox>
 #include <QFileDialog>
+#include <QFileInfo>
 #include <QPushButton>
 #include <QSlider>
 #include <cmath>
 
 #include "core/formats/camera_file.h"
 #include "ui/pages/calibration_dialog.h"
+#include "ui/presenters/camera_words.h"
 #include "ui/widgets/histogram_view.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/picture_view.h"
+#include "ui/widgets/primary_button.h"
 
 namespace skincal {
 namespace {
 
 constexpr int kSliderSteps = 100;
+constexpr int kShownLetters = 10;  // of the names of cameras, which may be long
 
 }  // namespace
 
@@ -34,12 +38,16 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
       histogram_(new HistogramView),
       figures_(mutedLabel()),
       intrinsics_(new QLabel),
-      load_(new QPushButton(tr("Load intrinsics …"))),
+      load_(new QPushButton(tr("Load …"))),
       makers_(new QPushButton(tr("Use the maker's intrinsics"))),
       calibrate_(new QPushButton(tr("Calibrate here …"))) {
     auto* top = new QHBoxLayout;
     devices_->setAccessibleName(tr("Camera"));
     devices_->setToolTip(tr("The camera that looks at the body"));
+    for (QComboBox* box : {devices_, formats_}) {
+        box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        box->setMinimumContentsLength(kShownLetters);
+    }
     for (const auto& offer : workbench.cameraOffers)
         devices_->addItem(offer.name);
     formats_->setAccessibleName(tr("Resolution"));
@@ -47,10 +55,11 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     exposure_->setRange(0, kSliderSteps);
     exposure_->setAccessibleName(tr("Exposure"));
     exposure_->setToolTip(tr("Shorten it until LEDs are bright and not clipped"));
-    top->addWidget(devices_);
-    top->addWidget(formats_);
-    top->addWidget(mutedLabel(tr("Exposure")));
-    top->addWidget(exposure_, 1);
+    top->addWidget(devices_, 3);
+    top->addWidget(formats_, 3);
+    top->addWidget(new QLabel(tr("Exposure")));
+    exposure_->setMinimumWidth(60);
+    top->addWidget(exposure_, 4);
     exposureText_->setMinimumWidth(64);
     top->addWidget(exposureText_);
     body().addLayout(top);
@@ -69,7 +78,6 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     load_->setObjectName(QStringLiteral("loadIntrinsics"));
     load_->setToolTip(tr("A file with focal lengths, centre and distortion of this camera at this size"));
     makers_->setObjectName(QStringLiteral("makersIntrinsics"));
-    makers_->setProperty("primary", true);
     makers_->setToolTip(tr("The simulated camera knows its own lens"));
     makers_->setVisible(workbench.hands && workbench.hands->intrinsics);
     calibrate_->setObjectName(QStringLiteral("calibrateHere"));
@@ -78,10 +86,11 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     buttons->addWidget(calibrate_);
     buttons->addWidget(load_);
     buttons->addStretch();
-    right->addLayout(buttons);
     right->addStretch();
-    below->addLayout(right, 1);
+    below->addLayout(right, 2);
     body().addLayout(below);
+    // Not beside the histogram: three buttons are wide.
+    body().addLayout(buttons);
 
     connect(devices_, &QComboBox::activated, this, [this](int offer) {
         if (offer != workbench_.chosenCamera())
@@ -106,8 +115,11 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
         if (!file.isEmpty())
             loadIntrinsics(file);
     });
-    connect(makers_, &QPushButton::clicked, this,
-            [this] { adopt(*workbench_.hands->intrinsics, tr("Use the maker's intrinsics")); });
+    connect(makers_, &QPushButton::clicked, this, [this] {
+        CameraOrigin origin;
+        origin.kind = CameraOrigin::Kind::Nominal;
+        adopt(*workbench_.hands->intrinsics, std::move(origin), tr("Use the maker's intrinsics"));
+    });
     connect(calibrate_, &QPushButton::clicked, this, &CameraPage::calibrateHere);
     connect(&workbench, &Workbench::cameraChosen, this, &CameraPage::listFormats);
     connect(&workbench.session(), &Session::decisionsChanged, this, &CameraPage::refresh);
@@ -147,11 +159,18 @@ void CameraPage::loadIntrinsics(const QString& file) {
         emit failed(QString::fromStdString(camera.error().message()));
         return;
     }
-    adopt(*camera, tr("Load intrinsics"));
+    CameraOrigin origin;
+    origin.kind = CameraOrigin::Kind::File;
+    origin.file = QFileInfo(file).fileName().toStdString();
+    adopt(*camera, std::move(origin), tr("Load intrinsics"));
 }
 
-void CameraPage::adopt(const CameraModel& camera, const QString& text) {
-    workbench_.session().decide(text, [&](Decisions& decisions) { decisions.camera = camera; });
+void CameraPage::adopt(const CameraModel& camera, CameraOrigin origin, const QString& text) {
+    origin.date = today();
+    workbench_.session().decide(text, [&](Decisions& decisions) {
+        decisions.camera = camera;
+        decisions.cameraOrigin = std::move(origin);
+    });
 }
 
 void CameraPage::listFormats() {
@@ -192,7 +211,9 @@ void CameraPage::refresh() {
                                ? tr("%1 ms").arg(1e3 * *source->exposure(), 0, 'f', 1)
                                : tr("automatic"));
     const auto& camera = workbench_.session().decisions().camera;
-    makers_->setEnabled(!camera);
+    const CameraOrigin& origin = workbench_.session().decisions().cameraOrigin;
+    makers_->setEnabled(!camera || origin.kind != CameraOrigin::Kind::Nominal);
+    setPrimary(makers_, !camera);
     if (!camera) {
         intrinsics_->setText(tr("<b>Intrinsics are not known yet.</b>"));
         return;
@@ -207,8 +228,8 @@ void CameraPage::refresh() {
                        .arg(camera->cy, 0, 'f', 1)
                        .arg(QString::fromUtf8(name(camera->distortionModel).data()))
                        .arg(camera->distortion.size());
-    if (const QString from = board_.provenanceOf(*camera); !from.isEmpty())
-        text += tr(" They were %1.").arg(from);
+    if (const QString from = sentenceOf(origin); !from.isEmpty())
+        text += tr(" They were %1.").arg(from.toHtmlEscaped());
     if (source != nullptr && (source->format().width != camera->width || source->format().height != camera->height))
         text += tr(" <b>The camera gives %1 × %2: choose that size, or other intrinsics.</b>")
                     .arg(source->format().width)

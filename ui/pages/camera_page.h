@@ -32,7 +32,7 @@ class CameraPage : public Page {
     void refresh();
     void showPicture();
     void calibrateHere();
-    void adopt(const CameraModel& camera, const QString& text);
+    void adopt(const CameraModel& camera, CameraOrigin origin, const QString& text);
 
     Workbench& workbench_;
     ScanPresenter& scan_;

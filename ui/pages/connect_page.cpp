@@ -7,8 +7,14 @@
 #include <QTableView>
 
 #include "ui/widgets/network_view.h"
+#include "ui/widgets/primary_button.h"
 
 namespace skincal {
+namespace {
+
+constexpr int kShownLetters = 18;  // of the names of devices, which may be long
+
+}  // namespace
 
 ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWidget* parent)
     : Page(tr("Connect"),
@@ -26,10 +32,11 @@ ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWid
     auto* top = new QHBoxLayout;
     devices_->setAccessibleName(tr("Skin"));
     devices_->setToolTip(tr("The skin to calibrate"));
+    devices_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    devices_->setMinimumContentsLength(kShownLetters);
     for (const auto& offer : workbench.skinOffers)
         devices_->addItem(offer.name);
     connect_->setObjectName(QStringLiteral("connect"));
-    connect_->setProperty("primary", true);
     connect_->setToolTip(tr("Open the skin and explore its network"));
     top->addWidget(devices_);
     top->addWidget(connect_);
@@ -71,6 +78,7 @@ ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWid
     body().addWidget(splitter, 1);
 
     connect(devices_, &QComboBox::activated, this, [this](int offer) { presenter_.chooseDevice(offer); });
+    connect(&workbench, &Workbench::skinChosen, this, [this] { devices_->setCurrentIndex(workbench_.chosenSkin()); });
     connect(connect_, &QPushButton::clicked, this, [this] {
         const bool isBusy = presenter_.state().phase == Connection::Phase::Opening ||
                             presenter_.state().phase == Connection::Phase::Exploring;
@@ -121,6 +129,8 @@ void ConnectPage::refresh() {
     status_->setText(text);
     const bool isIdle = state.phase == Phase::Disconnected || state.phase == Phase::Lost;
     connect_->setText(isIdle ? tr("Connect") : state.phase == Phase::Connected ? tr("Disconnect") : tr("Cancel"));
+    // Once there is a skin, the next thing is the next step.
+    setPrimary(connect_, isIdle);
     devices_->setEnabled(isIdle);
     const QModelIndexList rows = links_->selectionModel()->selectedRows();
     const JudgedLink* link =

@@ -33,7 +33,7 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
     constexpr std::uint64_t kSeed = 1;
     SimulatedRig rig(*findScenario(options.scenario), kSeed);
     Workbench workbench;
-    offerRig(workbench, rig);
+    const RigOffers demo = offerRig(workbench, rig);
     MainWindow window(workbench);
     window.setDark(!options.light);
     window.show();
@@ -46,6 +46,8 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
         QDir(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)).filePath(QStringLiteral("sessions"));
     SessionKeeper keeper(workbench.session(), kept);
     window.offerKept(keeper);
+    if (options.demo)
+        window.begin(demo);
     if (options.recording)
         window.openRecording(QString::fromStdString(options.recording->string()));
     return QApplication::exec();

@@ -9,6 +9,7 @@ namespace skincal {
 struct WindowOptions {
     std::string scenario = "demo";                   ///< what the rig is
     std::optional<std::filesystem::path> recording;  ///< to open at once
+    bool demo = false;                               ///< begins at the simulated rig, connected
     bool light = false;                              ///< light colours, whatever the desktop has
 };
 

@@ -12,6 +12,16 @@
     </message>
 </context>
 <context>
+    <name>LensWords</name>
+    <message numerus="yes">
+        <source>calibrated from %n boards, rms %1 px</source>
+        <translation>
+            <numerusform>calibrated from %n board, rms %1 px</numerusform>
+            <numerusform>calibrated from %n boards, rms %1 px</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>skincal::CalibrationDialog</name>
     <message numerus="yes">
         <source>%n boards</source>

@@ -7,6 +7,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "core/formats/camera_origin.h"
 #include "core/formats/file_error.h"
 #include "core/skin/skin.h"
 #include "core/vision/camera_model.h"
@@ -43,7 +44,8 @@ struct Recording {
     std::vector<Decision> decisions;
     std::string gravityFile;     ///< as read; writers use gravity.csv
     std::string detectionsFile;  ///< as read, empty where there is none; written detections.csv
-    UnknownKeys unknown{};       ///< of recording.json itself
+    CameraOrigin cameraOrigin{};
+    UnknownKeys unknown{};                                ///< of recording.json itself
     std::map<std::string, UnknownKeys> unknownOfTypes{};  ///< by name of the module type
 };
 

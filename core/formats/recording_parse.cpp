@@ -219,8 +219,11 @@ tl::expected<Recording, FileError> parseRecordingJson(std::string_view text, con
         readLinks(root, recording.skin, index);
         const bool isBegun = completeness == Completeness::Begun && root.holds("views") &&
                              root.at("views").array(kMaxViews).empty() && !root.holds("camera");
-        if (!isBegun)
+        if (!isBegun) {
             recording.camera = readCamera(root.at("camera"));
+            if (root.at("camera").holds("origin"))
+                recording.cameraOrigin = readCameraOrigin(root.at("camera").at("origin"));
+        }
         readViews(root, recording, index);
         readDecisions(root, recording, index);
         recording.gravityFile = root.at("gravity").text();

@@ -97,9 +97,11 @@ tl::expected<void, FileError> writeRecording(const Recording& recording, const f
 
     Json json = skinToJson(recording);
     json["gravity"] = "gravity.csv";
-    if (recording.camera.width > 0)
+    if (recording.camera.width > 0) {
         json["camera"] = cameraToJson(recording.camera);
-    else if (!recording.views.empty())
+        if (recording.cameraOrigin.kind != CameraOrigin::Kind::Unknown)
+            json["camera"]["origin"] = cameraOriginToJson(recording.cameraOrigin);
+    } else if (!recording.views.empty())
         throw std::logic_error("a recording with views needs a camera");
     json["views"] = Json::array();
     std::string detections = "view,module,x,y,sigma\n";

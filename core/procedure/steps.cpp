@@ -58,7 +58,7 @@ StepState scanState(const Progress& p) {
         return {StepStatus::Blocked, StepReason::CameraLost};
     if (!p.hasPictures)
         return {StepStatus::Blocked, StepReason::NoCamera};
-    return {StepStatus::ToDo, StepReason::NoViews};
+    return {StepStatus::ToDo, StepReason::FirstView};
 }
 
 StepState viewsState(const Progress& p) {

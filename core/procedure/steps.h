@@ -32,6 +32,7 @@ enum class StepReason {
     NoCamera,
     CameraLost,
     NoIntrinsics,
+    FirstView,  ///< all is ready to scan one
     NoViews,
     PatchesNotPlaced,  ///< further views are asked for
     FewViews,          ///< patches are seen from one side only, or modules not at all

@@ -6,15 +6,6 @@
 namespace skincal {
 namespace {
 
-bool sameCamera(const std::optional<CameraModel>& a, const std::optional<CameraModel>& b) {
-    if (!a || !b)
-        return a.has_value() == b.has_value();
-    const auto tie = [](const CameraModel& c) {
-        return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.distortionModel, c.distortion);
-    };
-    return tie(*a) == tie(*b);
-}
-
 bool sameDecision(const std::pair<const DetectionKey, Decision>& a, const std::pair<const DetectionKey, Decision>& b) {
     return a.first == b.first && a.second.verdict == b.second.verdict && a.second.reason == b.second.reason;
 }
@@ -63,6 +54,15 @@ ViewDetections withoutRejected(ViewDetections view, const Decisions& decisions) 
 
 }  // namespace
 
+bool sameCamera(const std::optional<CameraModel>& a, const std::optional<CameraModel>& b) {
+    if (!a || !b)
+        return a.has_value() == b.has_value();
+    const auto tie = [](const CameraModel& c) {
+        return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.distortionModel, c.distortion);
+    };
+    return tie(*a) == tie(*b);
+}
+
 LinkKey LinkKey::of(const Link& link) {
     if (std::tie(link.b, link.b_port) < std::tie(link.a, link.a_port))
         return {link.b, link.b_port, link.a, link.a_port};
@@ -73,7 +73,7 @@ bool Decisions::operator==(const Decisions& other) const {
     return links == other.links && droppedPoses == other.droppedPoses && droppedViews == other.droppedViews &&
            std::equal(detections.begin(), detections.end(), other.detections.begin(), other.detections.end(),
                       sameDecision) &&
-           sameCamera(camera, other.camera);
+           sameCamera(camera, other.camera) && cameraOrigin == other.cameraOrigin;
 }
 
 Measurements measurementsOf(const Measured& measured, const Decisions& decisions) {
@@ -92,8 +92,10 @@ Recording recordingOf(const Measured& measured, const Decisions& decisions) {
     Recording recording;
     recording.skin = decidedSkin(measured, decisions);
     recording.gravity = countingReadings(measured, decisions);
-    if (decisions.camera)
+    if (decisions.camera) {
         recording.camera = *decisions.camera;
+        recording.cameraOrigin = decisions.cameraOrigin;
+    }
     for (const ScannedView& view : measured.views) {
         // Without a camera pictures mean nothing.
         if (decisions.droppedViews.contains(view.name) || !decisions.camera)
@@ -127,8 +129,10 @@ OpenedRecording openedFrom(const Recording& recording) {
         opened.measured.views.push_back({view.name, view.frames, nullptr, {view.name, view.detections, {}}});
     for (const Decision& decision : recording.decisions)
         opened.decisions.detections[{decision.view, decision.module}] = decision;
-    if (recording.camera.width > 0)
+    if (recording.camera.width > 0) {
         opened.decisions.camera = recording.camera;
+        opened.decisions.cameraOrigin = recording.cameraOrigin;
+    }
     return opened;
 }
 

@@ -59,9 +59,13 @@ struct Decisions {
     std::set<std::string> droppedViews;
     std::map<DetectionKey, Decision> detections;
     std::optional<CameraModel> camera;
+    CameraOrigin cameraOrigin{};  ///< of `camera`
 
     [[nodiscard]] bool operator==(const Decisions& other) const;
 };
+
+/// Both none, or equal to the last digit.
+[[nodiscard]] bool sameCamera(const std::optional<CameraModel>& a, const std::optional<CameraModel>& b);
 
 /// What a calibration is computed from: the measured minus what was dropped or rejected. Needs Decisions::camera where
 /// there are views; without one they are left out.

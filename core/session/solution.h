@@ -26,6 +26,10 @@ struct Solution {
     bool isUpdate = false;  ///< from the solution before (updateJointly), rather than from the data alone
 };
 
+/// Whether one is what the other is, but for what differs when the same data are solved twice: a file of one does for
+/// the other.
+[[nodiscard]] bool isSameBody(const BodyModel& a, const BodyModel& b);
+
 /// What to measure next; takes longer than the solution itself.
 struct Guidance {
     std::uint64_t revision = 0;

@@ -34,6 +34,9 @@ class WatchfulApplication : public QApplication {
     }
 
     [[nodiscard]] static WatchfulApplication& instance() { return *static_cast<WatchfulApplication*>(qApp); }
+    /// Of all events that a user waits for, none may be longer.
+    static constexpr double kLongest = 0.05;
+
     [[nodiscard]] const Stall& longest() const { return longest_; }
     void forget() { longest_ = {}; }
 

@@ -2,6 +2,7 @@
 
 #include <QComboBox>
 #include <QFileDialog>
+#include <QFileInfo>
 #include <QPushButton>
 #include <QSlider>
 #include <algorithm>
@@ -12,14 +13,17 @@
 #include "ui/pages/calibration_dialog.h"
 #include "ui/pages/video_dialog.h"
 #include "ui/presenters/camera_words.h"
+#include "ui/presenters/lens_words.h"
 #include "ui/widgets/histogram_view.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/picture_view.h"
+#include "ui/widgets/primary_button.h"
 
 namespace skincal {
 namespace {
 
 constexpr int kSliderSteps = 100;
+constexpr int kShownLetters = 10;  // of the names of cameras, which may be long
 
 }  // namespace
 
@@ -39,24 +43,27 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
       figures_(mutedLabel()),
       controls_(mutedLabel()),
       intrinsics_(new QLabel),
-      load_(new QPushButton(tr("Load intrinsics …"))),
+      load_(new QPushButton(tr("Load …"))),
       makers_(new QPushButton(tr("Use the maker's intrinsics"))),
       calibrate_(new QPushButton(tr("Calibrate here …"))) {
     auto* top = new QHBoxLayout;
     devices_->setAccessibleName(tr("Camera"));
     devices_->setToolTip(tr("The camera that looks at the body"));
     devices_->setObjectName(QStringLiteral("cameras"));
-    devices_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
-    devices_->setMinimumContentsLength(14);
+    for (QComboBox* box : {devices_, formats_}) {
+        box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        box->setMinimumContentsLength(kShownLetters);
+    }
     formats_->setAccessibleName(tr("Resolution"));
     formats_->setToolTip(tr("Size and rate of the pictures; intrinsics hold for one size"));
     exposure_->setRange(0, kSliderSteps);
     exposure_->setAccessibleName(tr("Exposure"));
     exposure_->setToolTip(tr("Shorten it until LEDs are bright and not clipped"));
-    top->addWidget(devices_);
-    top->addWidget(formats_);
-    top->addWidget(mutedLabel(tr("Exposure")));
-    top->addWidget(exposure_, 1);
+    top->addWidget(devices_, 3);
+    top->addWidget(formats_, 3);
+    top->addWidget(new QLabel(tr("Exposure")));
+    exposure_->setMinimumWidth(60);
+    top->addWidget(exposure_, 4);
     exposureText_->setMinimumWidth(64);
     top->addWidget(exposureText_);
     body().addLayout(top);
@@ -77,7 +84,6 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     load_->setObjectName(QStringLiteral("loadIntrinsics"));
     load_->setToolTip(tr("A file with focal lengths, centre and distortion of this camera at this size"));
     makers_->setObjectName(QStringLiteral("makersIntrinsics"));
-    makers_->setProperty("primary", true);
     makers_->setToolTip(tr("The simulated camera knows its own lens"));
     calibrate_->setObjectName(QStringLiteral("calibrateHere"));
     calibrate_->setToolTip(tr("Show a printed chessboard or ChArUco board to this camera and get its intrinsics"));
@@ -85,11 +91,12 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     buttons->addWidget(calibrate_);
     buttons->addWidget(load_);
     buttons->addStretch();
-    right->addLayout(buttons);
     right->addWidget(controls_);
     right->addStretch();
-    below->addLayout(right, 1);
+    below->addLayout(right, 2);
     body().addLayout(below);
+    // Not beside the histogram: three buttons are wide.
+    body().addLayout(buttons);
 
     connect(devices_, &QComboBox::activated, this, &CameraPage::chooseDevice);
     connect(formats_, &QComboBox::activated, this, [this](int index) {
@@ -111,8 +118,11 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
         if (!file.isEmpty())
             loadIntrinsics(file);
     });
-    connect(makers_, &QPushButton::clicked, this,
-            [this] { adopt(*workbench_.hands->intrinsics, tr("Use the maker's intrinsics")); });
+    connect(makers_, &QPushButton::clicked, this, [this] {
+        CameraOrigin origin;
+        origin.kind = CameraOrigin::Kind::Nominal;
+        adopt(*workbench_.hands->intrinsics, std::move(origin), tr("Use the maker's intrinsics"));
+    });
     connect(calibrate_, &QPushButton::clicked, this, &CameraPage::calibrateHere);
     connect(&workbench, &Workbench::cameraOffersChanged, this, &CameraPage::listDevices);
     connect(&workbench, &Workbench::cameraChosen, this, [this] {
@@ -161,11 +171,18 @@ void CameraPage::loadIntrinsics(const QString& file) {
         emit failed(QString::fromStdString(camera.error().message()));
         return;
     }
-    adopt(*camera, tr("Load intrinsics"));
+    CameraOrigin origin;
+    origin.kind = CameraOrigin::Kind::File;
+    origin.file = QFileInfo(file).fileName().toStdString();
+    adopt(*camera, std::move(origin), tr("Load intrinsics"));
 }
 
-void CameraPage::adopt(const CameraModel& camera, const QString& text) {
-    workbench_.session().decide(text, [&](Decisions& decisions) { decisions.camera = camera; });
+void CameraPage::adopt(const CameraModel& camera, CameraOrigin origin, const QString& text) {
+    origin.date = today();
+    workbench_.session().decide(text, [&](Decisions& decisions) {
+        decisions.camera = camera;
+        decisions.cameraOrigin = std::move(origin);
+    });
 }
 
 void CameraPage::listDevices() {
@@ -279,7 +296,9 @@ void CameraPage::refresh() {
     const int chosen = workbench_.chosenCamera();
     makers_->setVisible(workbench_.hands && workbench_.hands->intrinsics &&
                         (chosen < 0 || workbench_.cameraOffers.at(static_cast<std::size_t>(chosen)).key.isEmpty()));
-    makers_->setEnabled(!camera);
+    const CameraOrigin& origin = workbench_.session().decisions().cameraOrigin;
+    makers_->setEnabled(!camera || origin.kind != CameraOrigin::Kind::Nominal);
+    setPrimary(makers_, !camera);
     if (!camera) {
         intrinsics_->setText(tr("<b>Intrinsics are not known yet.</b>"));
         return;
@@ -294,8 +313,8 @@ void CameraPage::refresh() {
                        .arg(camera->cy, 0, 'f', 1)
                        .arg(QString::fromUtf8(name(camera->distortionModel).data()))
                        .arg(camera->distortion.size());
-    if (const QString from = board_.provenanceOf(*camera); !from.isEmpty())
-        text += tr(" They were %1.").arg(from);
+    if (const QString from = sentenceOf(origin); !from.isEmpty())
+        text += tr(" They were %1.").arg(from.toHtmlEscaped());
     if (source != nullptr && source->format().width > 0 &&
         (source->format().width != camera->width || source->format().height != camera->height))
         text += tr(" <b>The camera gives %1 × %2: choose that size, or other intrinsics.</b>")

@@ -40,7 +40,7 @@ class CameraPage : public Page {
     void showPlaceholder();
     void showNotes();
     void calibrateHere();
-    void adopt(const CameraModel& camera, const QString& text);
+    void adopt(const CameraModel& camera, CameraOrigin origin, const QString& text);
 
     Workbench& workbench_;
     ScanPresenter& scan_;

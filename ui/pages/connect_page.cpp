@@ -10,8 +10,14 @@
 #include "ui/pages/address_dialog.h"
 #include "ui/presenters/skin_offer.h"
 #include "ui/widgets/network_view.h"
+#include "ui/widgets/primary_button.h"
 
 namespace skincal {
+namespace {
+
+constexpr int kShownLetters = 18;  // of the names of devices, which may be long
+
+}  // namespace
 
 ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWidget* parent)
     : Page(tr("Connect"),
@@ -30,10 +36,9 @@ ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWid
     devices_->setAccessibleName(tr("Skin"));
     devices_->setToolTip(tr("The skin to calibrate"));
     devices_->setObjectName(QStringLiteral("skins"));
-    devices_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
-    devices_->setMinimumContentsLength(14);
+    devices_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    devices_->setMinimumContentsLength(kShownLetters);
     connect_->setObjectName(QStringLiteral("connect"));
-    connect_->setProperty("primary", true);
     connect_->setToolTip(tr("Open the skin and explore its network"));
     top->addWidget(devices_);
     top->addWidget(connect_);
@@ -174,6 +179,8 @@ void ConnectPage::refresh() {
     status_->setText(text);
     const bool isIdle = state.phase == Phase::Disconnected || state.phase == Phase::Lost;
     connect_->setText(isIdle ? tr("Connect") : state.phase == Phase::Connected ? tr("Disconnect") : tr("Cancel"));
+    // Once there is a skin, the next thing is the next step.
+    setPrimary(connect_, isIdle);
     devices_->setEnabled(isIdle);
     const QModelIndexList rows = links_->selectionModel()->selectedRows();
     const JudgedLink* link =

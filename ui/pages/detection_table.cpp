@@ -14,7 +14,7 @@
 namespace skincal {
 namespace {
 
-constexpr int kCrop_px = 84;  // on the screen
+constexpr int kCrop_px = 64;  // on the screen
 
 QLabel* cropLabel(const QString& name) {
     auto* label = new QLabel;
@@ -37,8 +37,8 @@ DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, Q
       sorted_(new QSortFilterProxyModel(this)),
       table_(new QTableView),
       evidence_(mutedLabel()) {
-    auto* columns = new QHBoxLayout(this);
-    columns->setContentsMargins(0, 4, 0, 0);
+    auto* rows = new QVBoxLayout(this);
+    rows->setContentsMargins(0, 4, 0, 0);
     sorted_->setSourceModel(&presenter.detections());
     sorted_->setSortRole(DetectionModel::kSortRole);
     table_->setModel(sorted_);
@@ -52,10 +52,11 @@ DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, Q
     table_->setWordWrap(false);
     for (const int column : {DetectionModel::Module, DetectionModel::Residual, DetectionModel::Sigma})
         table_->setColumnWidth(column, 76);
-    table_->setColumnWidth(DetectionModel::State, 96);
-    columns->addWidget(table_, 1);
-    auto* side = new QVBoxLayout;
-    auto* crops = new QHBoxLayout;
+    table_->setColumnWidth(DetectionModel::State, 110);
+    // All of the width: the reason is the longest column, and the one that is read.
+    rows->addWidget(table_, 1);
+    auto* below = new QHBoxLayout;
+    below->setSpacing(8);
     const std::array names{tr("lit"), tr("dark"), tr("difference")};
     for (std::size_t i = 0; i < crops_.size(); ++i) {
         auto* column = new QVBoxLayout;
@@ -64,33 +65,35 @@ DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, Q
         auto* name = mutedLabel(names.at(i));
         name->setAlignment(Qt::AlignCenter);
         column->addWidget(name);
-        crops->addLayout(column);
+        column->setSpacing(2);
+        below->addLayout(column);
     }
-    side->addLayout(crops);
-    side->addWidget(evidence_);
-    side->addStretch();
-    auto* buttons = new QHBoxLayout;
+    evidence_->setObjectName(QStringLiteral("evidence"));
+    evidence_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+    below->addWidget(evidence_, 1);
+    auto* buttons = new QVBoxLayout;
     accept_->setObjectName(QStringLiteral("accept"));
     reject_->setObjectName(QStringLiteral("reject"));
     accept_->setToolTip(tr("Take back that you rejected the selected detections"));
     reject_->setToolTip(tr("The selected detections are no LEDs of these modules and do not count"));
     buttons->addWidget(accept_);
     buttons->addWidget(reject_);
-    side->addLayout(buttons);
-    columns->addLayout(side);
+    buttons->addStretch();
+    below->addLayout(buttons);
+    rows->addLayout(below);
     connect(accept_, &QPushButton::clicked, this, [this] { presenter_.detections().accept(selected()); });
     connect(reject_, &QPushButton::clicked, this, [this] { presenter_.detections().reject(selected()); });
     // Sorting anew and other views clear the selection without a word: it goes with the modules.
     connect(sorted_, &QAbstractItemModel::modelAboutToBeReset, this, [this] { kept_ = selected(); });
     connect(sorted_, &QAbstractItemModel::modelReset, this, [this] {
-        QItemSelection rows;
+        QItemSelection chosen;
         for (const ModuleId module : std::exchange(kept_, {})) {
             if (const auto row = presenter_.detections().rowOf(module)) {
                 const QModelIndex index = sorted_->mapFromSource(presenter_.detections().index(*row, 0));
-                rows.select(index, index);
+                chosen.select(index, index);
             }
         }
-        table_->selectionModel()->select(rows, QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
+        table_->selectionModel()->select(chosen, QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
         showEvidence();
         refresh();
     });

@@ -197,8 +197,11 @@ void MeshPanel::refresh() {
                        : tr("%1 rms from %2").arg(MeshWords::mm(comparison->rms), presenter_.name()));
         colour = isDoubtful ? theme.attention : theme.good;
         const QString unit = presenter_.usedUnit() == MeshUnit::Millimetre ? tr("millimetres") : tr("metres");
-        reason_->setText(
-            tr("The mesh is taken to be in %1. Deviations are along its outward normal, positive above.").arg(unit));
+        reason_->setText(presenter_.isStale()
+                             ? tr("Stale: of before the last change. The newest body is being compared …")
+                             : tr("The mesh is taken to be in %1. Deviations are along its outward normal, positive "
+                                  "above.")
+                                   .arg(unit));
     }
     verdict_->setStyleSheet(QStringLiteral("color: %1").arg(colour.name()));
     if (comparison != shown_)

@@ -15,6 +15,10 @@ Page::Page(const QString& title, const QString& purpose, QWidget* parent)
     layout_->addWidget(line);
 }
 
+int Page::heightForWidth(int width) const {
+    return layout_->minimumHeightForWidth(width);
+}
+
 QLabel* mutedLabel(const QString& text) {
     auto* label = new QLabel(text);
     label->setProperty("muted", true);

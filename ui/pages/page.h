@@ -15,6 +15,9 @@ class Page : public QWidget {
     /// The page is shown or not any more: devices run only while somebody looks.
     virtual void setActive(bool active) { Q_UNUSED(active) }
 
+    /// The least that it takes: where there is less, it scrolls.
+    [[nodiscard]] int heightForWidth(int width) const override;
+
   protected:
     [[nodiscard]] QVBoxLayout& body() { return *layout_; }
 

@@ -10,14 +10,13 @@
 
 #include "ui/widgets/curve_plot.h"
 #include "ui/widgets/gravity_sphere.h"
+#include "ui/widgets/primary_button.h"
 
 namespace skincal {
 namespace {
 
 using Phase = PoseCapture::Phase;
 
-/// What a good edge is: below it the play of the mould matters more.
-constexpr double kGoodEdge_deg = 1.0;
 constexpr int kInspected = 5;  // worst modules of a pose that are named
 
 }  // namespace
@@ -32,6 +31,7 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
       sphere_(new GravitySphere),
       forecast_(new CurvePlot),
       instruction_(new QLabel),
+      verdict_(new QLabel),
       movement_(mutedLabel()),
       rest_(new QProgressBar),
       capture_(new QPushButton(tr("Capture (space)"))),
@@ -43,6 +43,9 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
     instruction_->setObjectName(QStringLiteral("instruction"));
     instruction_->setWordWrap(true);
     body().addWidget(instruction_);
+    verdict_->setObjectName(QStringLiteral("poseVerdict"));
+    verdict_->setWordWrap(true);
+    body().addWidget(verdict_);
     auto* middle = new QHBoxLayout;
     middle->addWidget(sphere_, 3);
     auto* side = new QVBoxLayout;
@@ -59,7 +62,6 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
     capture_->setToolTip(tr("Capture this pose now, even if it is like another"));
     buttons->addWidget(capture_);
     turn_->setObjectName(QStringLiteral("turn"));
-    turn_->setProperty("primary", true);
     turn_->setToolTip(tr("The simulated arm turns until the dot lies in the ring"));
     turn_->setVisible(presenter.hasHands());
     buttons->addWidget(turn_);
@@ -68,7 +70,9 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
     forecast_->setTitle(tr("Expected error of an edge"));
     forecast_->setAbscissa(tr("poses"));
     forecast_->setUnit(tr("°"));
-    forecast_->setGoal(kGoodEdge_deg);
+    forecast_->setObjectName(QStringLiteral("forecast"));
+    constexpr double kGood_deg = PosePresenter::kGoodEdge / kDegree;
+    forecast_->setGoal(kGood_deg, tr("good: below %1°").arg(kGood_deg));
     forecast_->setToolTip(
         tr("Standard deviation of the angle between two neighbours, from gravity alone, about the axis "
            "known worst. The dashed line is good."));
@@ -104,14 +108,34 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
     connect(&presenter, &PosePresenter::refused, this,
             [this] { instruction_->setText(tr("The body moves: hold it still to capture.")); });
     connect(poses_->selectionModel(), &QItemSelectionModel::selectionChanged, this, &PosePage::inspectSelected);
-    connect(&presenter.poses(), &QAbstractItemModel::modelReset, this, &PosePage::inspectSelected);
+    connect(&presenter.poses(), &QAbstractItemModel::dataChanged, this, &PosePage::inspectSelected);
+    // Another pose fills the table anew: the selection goes with the pose.
+    connect(&presenter.poses(), &QAbstractItemModel::modelAboutToBeReset, this, [this] {
+        const int row = selectedRow();
+        kept_ = row < 0 ? std::nullopt : std::optional(presenter_.poses().poseAt(row));
+    });
+    connect(&presenter.poses(), &QAbstractItemModel::modelReset, this, [this] {
+        if (const auto pose = std::exchange(kept_, std::nullopt))
+            selectPose(*pose);
+        inspectSelected();
+    });
     refresh();
     inspectSelected();
 }
 
 void PosePage::setActive(bool active) {
+    isActive_ = active;
     presenter_.setActive(active);
     refresh();
+    // Its marks in 3D mean nothing to other pages.
+    active ? inspectSelected() : showInBody({});
+}
+
+void PosePage::showInBody(std::vector<ModuleId> modules) {
+    if (modules == inBody_)
+        return;
+    inBody_ = std::move(modules);
+    emit modulesSelected(inBody_);
 }
 
 void PosePage::selectPose(int pose) {
@@ -147,6 +171,14 @@ void PosePage::refresh() {
     for (const auto& sigma : presenter_.forecast())
         degrees.push_back(sigma ? std::optional(*sigma / kDegree) : std::nullopt);
     forecast_->setValues(std::move(degrees));
+    const bool isEnough = presenter_.verdict() == PoseVerdict::Enough;
+    const QString verdict = presenter_.verdictText();
+    verdict_->setText(isEnough ? tr("✓ %1").arg(verdict) : verdict);
+    verdict_->setProperty(isEnough ? "good" : "attention", !verdict.isEmpty());
+    verdict_->setProperty(isEnough ? "attention" : "good", false);
+    verdict_->style()->unpolish(verdict_);
+    verdict_->style()->polish(verdict_);
+    setPrimary(turn_, !isEnough);
     const bool hasTarget = presenter_.target().has_value();
     switch (presenter_.state().phase) {
         case Phase::Off:
@@ -169,24 +201,23 @@ void PosePage::refresh() {
 void PosePage::inspectSelected() {
     const int row = selectedRow();
     drop_->setEnabled(row >= 0);
+    drop_->setText(row >= 0 && presenter_.poses().isDropped(row) ? tr("Take pose back") : tr("Drop pose"));
+    std::vector<ModuleId> modules;
     if (row < 0) {
         inspected_->setText(tr("Select a pose to see which modules disagree with their patch."));
-        return;
-    }
-    drop_->setText(presenter_.poses().isDropped(row) ? tr("Take pose back") : tr("Drop pose"));
-    const auto residuals = presenter_.poses().residualsOf(presenter_.poses().poseAt(row));
-    if (residuals.empty()) {
+    } else if (const auto residuals = presenter_.poses().residualsOf(presenter_.poses().poseAt(row));
+               residuals.empty()) {
         inspected_->setText(tr("No residuals yet: patches have no shape."));
-        return;
+    } else {
+        QStringList worst;
+        for (std::size_t i = 0; i < residuals.size() && i < kInspected; ++i) {
+            worst << tr("module %1: %2 m/s²").arg(residuals[i].module.value).arg(residuals[i].length, 0, 'f', 3);
+            modules.push_back(residuals[i].module);
+        }
+        inspected_->setText(tr("Farthest from their patch: %1").arg(worst.join(QStringLiteral(", "))));
     }
-    QStringList worst;
-    std::vector<ModuleId> modules;
-    for (std::size_t i = 0; i < residuals.size() && i < kInspected; ++i) {
-        worst << tr("module %1: %2 m/s²").arg(residuals[i].module.value).arg(residuals[i].length, 0, 'f', 3);
-        modules.push_back(residuals[i].module);
-    }
-    inspected_->setText(tr("Farthest from their patch: %1").arg(worst.join(QStringLiteral(", "))));
-    emit modulesSelected(modules);
+    if (isActive_)
+        showInBody(std::move(modules));
 }
 
 }  // namespace skincal

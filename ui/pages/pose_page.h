@@ -29,11 +29,13 @@ class PosePage : public Page {
     void refresh();
     void inspectSelected();
     [[nodiscard]] int selectedRow() const;
+    void showInBody(std::vector<ModuleId> modules);
 
     PosePresenter& presenter_;
     GravitySphere* sphere_;
     CurvePlot* forecast_;
     QLabel* instruction_;
+    QLabel* verdict_;
     QLabel* movement_;
     QProgressBar* rest_;
     QPushButton* capture_;
@@ -42,6 +44,9 @@ class PosePage : public Page {
     QCheckBox* automatic_;
     QTableView* poses_;
     QLabel* inspected_;
+    std::optional<int> kept_;       ///< pose selected, while the table is filled anew
+    std::vector<ModuleId> inBody_;  ///< that are marked in 3D for the selected pose
+    bool isActive_ = false;
 };
 
 }  // namespace skincal

@@ -88,8 +88,9 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     auto* splitter = new QSplitter(Qt::Vertical);
     splitter->addWidget(picture_);
     splitter->addWidget(table_);
-    splitter->setStretchFactor(0, 3);
-    splitter->setStretchFactor(1, 2);
+    splitter->setStretchFactor(0, 1);
+    splitter->setStretchFactor(1, 1);
+    splitter->setSizes({300, 250});
     splitter->setChildrenCollapsible(false);
     body().addWidget(splitter, 1);
 

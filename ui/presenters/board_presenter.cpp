@@ -3,16 +3,9 @@
 #include <QtConcurrent/QtConcurrentRun>
 
 #include "ui/presenters/board_words.h"
+#include "ui/presenters/lens_words.h"
 
 namespace skincal {
-namespace {
-
-bool isSame(const CameraModel& a, const CameraModel& b) {
-    return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
-           a.distortionModel == b.distortionModel && a.distortion == b.distortion;
-}
-
-}  // namespace
 
 BoardPresenter::BoardPresenter(Workbench& workbench, ScanPresenter& scan, QObject* parent)
     : QObject(parent), workbench_(workbench), scan_(scan) {
@@ -207,19 +200,15 @@ bool BoardPresenter::canAccept() const {
 void BoardPresenter::accept() {
     if (!canAccept())
         return;
-    const std::size_t used = calibration_->boards.size() - calibration_->rejected.size();
-    const QString from = tr("calibrated from %1 boards, rms %2 px").arg(used).arg(calibration_->rms_px, 0, 'f', 2);
-    accepted_.emplace_back(calibration_->camera, from);
-    workbench_.session().decide(tr("Intrinsics %1").arg(from),
-                                [&](Decisions& decisions) { decisions.camera = calibration_->camera; });
-}
-
-QString BoardPresenter::provenanceOf(const CameraModel& camera) const {
-    for (const auto& [model, from] : accepted_) {
-        if (isSame(model, camera))
-            return from;
-    }
-    return {};
+    CameraOrigin origin;
+    origin.kind = CameraOrigin::Kind::Calibrated;
+    origin.boards = static_cast<int>(calibration_->boards.size() - calibration_->rejected.size());
+    origin.rms_px = calibration_->rms_px;
+    origin.date = today();
+    workbench_.session().decide(tr("Intrinsics %1").arg(sentenceOf(origin)), [&](Decisions& decisions) {
+        decisions.camera = calibration_->camera;
+        decisions.cameraOrigin = origin;
+    });
 }
 
 }  // namespace skincal

@@ -8,7 +8,7 @@
 #include "core/formats/export_ply.h"
 #include "core/formats/export_urdf.h"
 #include "core/formats/files.h"
-#include "ui/print/report.h"
+#include "ui/presenters/lens_words.h"
 
 namespace skincal {
 namespace {
@@ -24,35 +24,54 @@ ExportPresenter::ExportPresenter(Workbench& workbench, QObject* parent) : QObjec
         {tr("Body model"), QStringLiteral(".body.json"),
          tr("Everything: poses with covariances, verdicts on links and detections, quality. Metres, unit quaternions "
             "(x y z w), in the body frame, which is the first placed camera's."),
-         [](const BodyModel& body) { return bodyToJson(body); }},
+         [](const Solution& solution) { return bodyToJson(solution.body); }},
         {tr("URDF"), QStringLiteral(".urdf"),
          tr("For robots: a link skin_base (the body frame), a fixed link per patch and per module. Metres and "
             "radians."),
-         [](const BodyModel& body) { return exportUrdf(body); }},
+         [](const Solution& solution) { return exportUrdf(solution.body); }},
         {tr("CSV table"), QStringLiteral(".csv"),
          tr("One row per module: number, type, patch, position (m) and unit quaternion (x y z w) in the body frame."),
-         [](const BodyModel& body) { return exportCsv(body); }},
+         [](const Solution& solution) { return exportCsv(solution.body); }},
         {tr("PLY mesh"), QStringLiteral(".ply"),
          tr("The outlines of all placed boards as faces with a colour per patch. Metres, body frame."),
-         [](const BodyModel& body) { return exportPly(body); }},
+         [](const Solution& solution) { return exportPly(solution.body); }},
         {tr("Report (PDF)"), QStringLiteral(".pdf"),
          tr("For people and files: verdict, reasons, figures, and a table of all modules. Millimetres, body frame."),
-         [](const BodyModel& body) { return reportPdf(body, now()).toStdString(); }, true},
+         [this](const Solution& solution) { return reportPdf(solution.body, factsOf(solution)).toStdString(); }, true},
         {tr("Report (HTML)"), QStringLiteral(".html"), tr("The same for a browser."),
-         [](const BodyModel& body) { return reportHtml(body, now()).toStdString(); }, true},
+         [this](const Solution& solution) { return reportHtml(solution.body, factsOf(solution)).toStdString(); }, true},
     };
     connect(&workbench.session(), &Session::solutionChanged, this, &ExportPresenter::changed);
 }
 
-const BodyModel* ExportPresenter::body() const {
+const Solution* ExportPresenter::solution() const {
     const auto& solution = workbench_.session().solution();
-    return solution && solution->body.quality.modulesPlaced > 0 ? &solution->body : nullptr;
+    return solution && solution->body.quality.modulesPlaced > 0 ? solution.get() : nullptr;
+}
+
+const BodyModel* ExportPresenter::body() const {
+    const Solution* placed = solution();
+    return placed != nullptr ? &placed->body : nullptr;
+}
+
+ReportFacts ExportPresenter::factsOf(const Solution& solution) const {
+    ReportFacts facts;
+    facts.when = now();
+    for (const Shortfall& shortfall : solution.shortfalls)
+        facts.shortfalls.push_back(shortfall.text);
+    if (solution.measurements->camera.width > 0)
+        facts.camera = solution.measurements->camera;
+    // While a newer camera is being solved with, this body is of the one before.
+    const Decisions& decisions = workbench_.session().decisions();
+    if (facts.camera && sameCamera(decisions.camera, facts.camera))
+        facts.cameraFrom = sentenceOf(decisions.cameraOrigin);
+    return facts;
 }
 
 QString ExportPresenter::preview(std::size_t format, int lines) const {
     if (body() == nullptr)
         return {};
-    const std::string bytes = formats_.at(format).bytes(*body());
+    const std::string bytes = formats_.at(format).bytes(*solution());
     if (bytes.starts_with("%PDF"))
         return tr("%1 kB of pages for printing.").arg(bytes.size() / 1024);
     const QString text = QString::fromStdString(bytes);
@@ -67,7 +86,7 @@ QString ExportPresenter::preview(std::size_t format, int lines) const {
 QString ExportPresenter::write(std::size_t format, const std::filesystem::path& file) {
     if (body() == nullptr)
         return tr("There is no placed module to export.");
-    const auto result = writeFileAtomically(file, formats_.at(format).bytes(*body()));
+    const auto result = writeFileAtomically(file, formats_.at(format).bytes(*solution()));
     if (!result)
         return QString::fromStdString(result.error().message());
     emit written(QString::fromStdString(file.string()));

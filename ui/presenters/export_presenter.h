@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "ui/presenters/workbench.h"
+#include "ui/print/report.h"
 
 namespace skincal {
 
@@ -11,7 +12,7 @@ struct ExportFormat {
     QString name;
     QString suffix;       ///< of the file, with its dot
     QString description;  ///< what it holds, its frames and units
-    std::function<std::string(const BodyModel&)> bytes;
+    std::function<std::string(const Solution&)> bytes;
     bool isReport = false;  ///< for people: bears the time at which it was written
 };
 
@@ -34,6 +35,10 @@ class ExportPresenter : public QObject {
     void written(const QString& file);
 
   private:
+    /// Null as body() is.
+    [[nodiscard]] const Solution* solution() const;
+    [[nodiscard]] ReportFacts factsOf(const Solution& solution) const;
+
     Workbench& workbench_;
     std::vector<ExportFormat> formats_;
 };

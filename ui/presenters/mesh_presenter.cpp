@@ -15,8 +15,11 @@ MeshPresenter::MeshPresenter(Workbench& workbench, QObject* parent)
     pool_.setMaxThreadCount(1);
     connect(&watcher_, &QFutureWatcherBase::finished, this, &MeshPresenter::finish);
     connect(&workbench.session(), &Session::solutionChanged, this, [this] {
-        if (hasMesh())
-            compareSoon();
+        if (!hasMesh())
+            return;
+        // What is shown stays until there is better: the mesh does not flicker with every decision.
+        const auto shown = placedModules().empty() ? nullptr : comparison_;
+        compareSoon(shown);
     });
 }
 
@@ -85,19 +88,19 @@ void MeshPresenter::setActive(bool active) {
     isActive_ = active;
     if (active && isDue_) {
         start();
-    } else if (!active && isBusy()) {
+    } else if (!active && isBusy() && !comparison_) {
         isDue_ = true;
         *cancelled_ = true;
     }
 }
 
-void MeshPresenter::compareSoon() {
+void MeshPresenter::compareSoon(std::shared_ptr<const MeshComparison> meanwhile) {
     isDue_ = true;
     ++run_;
     *cancelled_ = true;
-    comparison_.reset();
+    comparison_ = std::move(meanwhile);
     complaint_.clear();
-    if (isActive_)
+    if (isWanted())
         start();
     emit changed();
 }
@@ -168,7 +171,7 @@ void MeshPresenter::finish() {
         comparison_ = outcome.comparison;
         complaint_ = outcome.complaint;
     }
-    if (isDue_ && isActive_)
+    if (isDue_ && isWanted())
         start();
     emit changed();
 }

@@ -32,7 +32,8 @@ class MeshPresenter : public QObject {
     /// Whether modules may all lie above the surface by the same.
     void setOffsetFitted(bool fitted);
     [[nodiscard]] bool isOffsetFitted() const { return isOffsetFitted_; }
-    /// Not being looked at, nothing is compared: what runs is cancelled, and done once it is looked at again. A file is
+    /// Not being looked at, nothing is compared for a first time: what runs is cancelled, and done once it is looked at
+    /// again. A comparison that is there, which the 3D view shows, follows the body whatever is looked at. A file is
     /// read to its end, once.
     void setActive(bool active);
 
@@ -40,7 +41,9 @@ class MeshPresenter : public QObject {
     /// The file without its folders.
     [[nodiscard]] const QString& name() const { return name_; }
     [[nodiscard]] bool isBusy() const { return watcher_.isRunning(); }
-    /// Of the newest body; null while busy, without a body, and where there is a complaint.
+    /// Whether a newer body is being compared than that of comparison().
+    [[nodiscard]] bool isStale() const { return comparison_ && (isDue_ || isBusy()); }
+    /// Null before the first is there, without a body, and where there is a complaint.
     [[nodiscard]] const std::shared_ptr<const MeshComparison>& comparison() const { return comparison_; }
     /// In metres; null before it was read.
     [[nodiscard]] const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
@@ -80,7 +83,10 @@ class MeshPresenter : public QObject {
     };
 
     void begin(const QString& name);
-    void compareSoon();
+    /// @param meanwhile  what is shown until the new one is there
+    void compareSoon(std::shared_ptr<const MeshComparison> meanwhile = nullptr);
+    /// Somebody looks at it: on its page, or in 3D, where a comparison is shown whatever the page.
+    [[nodiscard]] bool isWanted() const { return isActive_ || comparison_; }
     void start();
     void finish();
     /// On the thread.

@@ -135,8 +135,7 @@ void PoseModel::refresh() {
     std::map<int, std::vector<GravityReading>> byPose;
     for (const GravityReading& reading : session.measured().gravity)
         byPose[reading.pose].push_back(reading);
-    beginResetModel();
-    rows_.clear();
+    std::vector<Row> rows;
     for (const auto& [pose, readings] : byPose) {
         Row row{pose, readings.size(), std::nullopt, std::nullopt, session.decisions().droppedPoses.contains(pose)};
         std::vector<GravityReading> others;
@@ -152,8 +151,19 @@ void PoseModel::refresh() {
             squares += residual.length * residual.length;
         if (!residuals.empty())
             row.residual = std::sqrt(squares / static_cast<double>(residuals.size()));
-        rows_.push_back(std::move(row));
+        rows.push_back(std::move(row));
     }
+    // Whoever has selected a pose keeps it, as long as there are the same.
+    const bool isSame = std::equal(rows.begin(), rows.end(), rows_.begin(), rows_.end(),
+                                   [](const Row& a, const Row& b) { return a.pose == b.pose; });
+    if (isSame) {
+        rows_ = std::move(rows);
+        if (!rows_.empty())
+            emit dataChanged(index(0, 0), index(rowCount() - 1, Columns - 1));
+        return;
+    }
+    beginResetModel();
+    rows_ = std::move(rows);
     endResetModel();
 }
 

@@ -48,6 +48,7 @@ PosePresenter::PosePresenter(Workbench& workbench, QObject* parent)
     connect(&session, &Session::skinChanged, this, &PosePresenter::refresh);
     connect(&session, &Session::posesChanged, this, &PosePresenter::refresh);
     connect(&session, &Session::decisionsChanged, this, &PosePresenter::refresh);
+    connect(&session, &Session::solutionChanged, this, &PosePresenter::stateChanged);
     connect(&workbench, &Workbench::skinChosen, this, &PosePresenter::attachDevice);
     connect(&workbench, &Workbench::skinReadyChanged, this, [this] { setActive(isActive_); });
     if (workbench.skin() != nullptr)
@@ -104,6 +105,41 @@ std::optional<double> PosePresenter::angleToTarget() const {
     if (!to || !up_)
         return std::nullopt;
     return std::acos(std::clamp(to->dot(*up_), -1.0, 1.0));
+}
+
+PoseVerdict PosePresenter::verdict() const {
+    // Two give rotations, three tell where one of them is off.
+    constexpr std::size_t kFewest = 3;
+    if (forecast_.empty())
+        return PoseVerdict::None;
+    const auto& sigma = forecast_.back();
+    if (!sigma || forecast_.size() < kFewest)
+        return PoseVerdict::TooFew;
+    if (*sigma > kGoodEdge)
+        return PoseVerdict::NotExact;
+    // The forecast is of one module; the body knows them all.
+    const auto& solution = workbench_.session().solution();
+    const bool isAlike = solution && solution->revision == workbench_.session().revision() &&
+                         std::any_of(solution->shortfalls.begin(), solution->shortfalls.end(),
+                                     [](const Shortfall& s) { return s.kind == Shortfall::Kind::PosesAlike; });
+    return isAlike ? PoseVerdict::TooAlike : PoseVerdict::Enough;
+}
+
+QString PosePresenter::verdictText() const {
+    const auto figure = [&] { return QString::number(*forecast_.back() / kDegree, 'f', 1); };
+    const QString good = QString::number(kGoodEdge / kDegree, 'f', 0);
+    switch (verdict()) {
+        case PoseVerdict::None:
+            return {};
+        case PoseVerdict::TooFew:
+            return tr("Not enough yet: three poses are the least, each with another side up.");
+        case PoseVerdict::NotExact:
+            return tr("Not enough yet: an edge will be known to %1°, %2° is good.").arg(figure(), good);
+        case PoseVerdict::TooAlike:
+            return tr("Not enough yet: for some modules the poses are too alike.");
+        default:
+            return tr("Enough: an edge will be known to %1°. Further poses still help a little.").arg(figure());
+    }
 }
 
 void PosePresenter::attachDevice() {

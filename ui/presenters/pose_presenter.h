@@ -10,6 +10,15 @@
 
 namespace skincal {
 
+/// Whether the poses that count suffice.
+enum class PoseVerdict {
+    None,      ///< there is none yet
+    TooFew,    ///< or all alike: they leave an axis free
+    NotExact,  ///< more of them, or more different ones, would tell a good deal more
+    TooAlike,  ///< for some modules, as the newest body says
+    Enough,
+};
+
 /// Leads the operator from pose to pose: where the body's up is, where it has been, where it should go, and captures
 /// when it rests. Directions are in the frame of one module, the reference, which has to be somewhere on the body;
 /// which one does not matter.
@@ -44,6 +53,11 @@ class PosePresenter : public QObject {
     [[nodiscard]] std::optional<double> angleToTarget() const;
     /// Expected standard deviation of an edge's rotation with the first n poses, rad, from n = 1 on.
     [[nodiscard]] const std::vector<std::optional<double>>& forecast() const { return forecast_; }
+    /// An edge that is known as well as this is good: below it the play of the moulds matters more. Rad.
+    static constexpr double kGoodEdge = 1 * kDegree;
+    [[nodiscard]] PoseVerdict verdict() const;
+    /// The same in a sentence; empty before the first pose.
+    [[nodiscard]] QString verdictText() const;
     [[nodiscard]] std::optional<ModuleId> reference() const { return reference_; }
 
   signals:

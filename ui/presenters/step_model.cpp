@@ -45,6 +45,8 @@ QString sentenceOf(StepReason reason) {
             return StepModel::tr("the camera gives no pictures");
         case StepReason::NoIntrinsics:
             return StepModel::tr("intrinsics are needed");
+        case StepReason::FirstView:
+            return StepModel::tr("ready: scan a view");
         case StepReason::NoViews:
             return StepModel::tr("scan a view first");
         case StepReason::PatchesNotPlaced:
@@ -111,7 +113,7 @@ QVariant StepModel::data(const QModelIndex& index, int role) const {
 
 void StepModel::noteExport() {
     if (const auto& solution = workbench_.session().solution())
-        exported_ = solution->revision;
+        exported_ = solution;
     refresh();
 }
 
@@ -144,9 +146,11 @@ Progress StepModel::progress() const {
         };
         p.arePosesAlike = lacks(Shortfall::Kind::PosesAlike);
         p.areViewsFew = lacks(Shortfall::Kind::FewViews) || lacks(Shortfall::Kind::ModulesUnseen);
-        p.isExportNewest = exported_ == solution->revision && !session.isSolving();
+        // Undone, a decision leaves the body as it was exported.
+        p.isExportNewest =
+            exported_ && !session.isSolving() && (exported_ == solution || isSameBody(exported_->body, solution->body));
     }
-    p.isExported = exported_.has_value();
+    p.isExported = exported_ != nullptr;
     return p;
 }
 

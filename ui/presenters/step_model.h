@@ -41,7 +41,7 @@ class StepModel : public QAbstractListModel {
     const ConnectPresenter& connection_;
     const ScanPresenter& scan_;
     StepStates states_;
-    std::optional<std::uint64_t> exported_;  ///< revision of the solution that was
+    std::shared_ptr<const Solution> exported_;  ///< the newest that was; null where none was
     bool isCameraLost_ = false;
     bool hadPictures_ = false;
 };

@@ -6,6 +6,7 @@
 #include <QPainter>
 #include <QPdfWriter>
 #include <QTextDocument>
+#include <algorithm>
 #include <cmath>
 
 namespace skincal {
@@ -49,8 +50,11 @@ QString millimetres(double metres) {
 QString origin(const BodyGenerator& generator) {
     QString rows = row({tr("Program"), escaped(generator.program + " " + generator.version)});
     rows += row({tr("Method"), escaped(generator.method)});
-    for (const auto& [name, value] : generator.options)
-        rows += row({escaped(name), escaped(value)});
+    for (const auto& [name, value] : generator.options) {
+        // Some writers name it twice.
+        if (name != "method")
+            rows += row({escaped(name), escaped(value)});
+    }
     for (const auto& [file, digest] : generator.recording_sha256)
         rows += row({escaped(file), QStringLiteral("SHA-256 ") + escaped(digest)});
     return table({}, rows);
@@ -69,13 +73,64 @@ QString figures(const BodyQuality& quality) {
     return table({}, rows);
 }
 
+QString camera(const ReportFacts& facts) {
+    const CameraModel& c = *facts.camera;
+    QString rows = row({tr("Pictures"), tr("%1 × %2 pixels").arg(c.width).arg(c.height)});
+    rows += row({tr("Focal lengths"), tr("%1 and %2 px").arg(c.fx, 0, 'f', 2).arg(c.fy, 0, 'f', 2)});
+    rows += row({tr("Centre"), tr("%1, %2 px").arg(c.cx, 0, 'f', 2).arg(c.cy, 0, 'f', 2)});
+    QStringList coefficients;
+    for (const double coefficient : c.distortion)
+        coefficients << QString::number(coefficient, 'g', 5);
+    rows += row({tr("Distortion"),
+                 QString::fromUtf8(name(c.distortionModel).data()) + u' ' + coefficients.join(QStringLiteral(", "))});
+    rows += row(
+        {tr("Intrinsics"), facts.cameraFrom.isEmpty() ? tr("of unknown origin") : facts.cameraFrom.toHtmlEscaped()});
+    return table({}, rows);
+}
+
+/// Standard deviations per axis; nothing where a module has none.
+struct Sigma {
+    std::optional<double> position;  ///< m
+    std::optional<double> rotation;  ///< rad
+};
+
+Sigma sigmaOf(const BodyModule& module) {
+    if (!module.T_body_module || !module.covariance)
+        return {};
+    return {std::sqrt(module.covariance->bottomRightCorner<3, 3>().trace() / 3),
+            std::sqrt(module.covariance->topLeftCorner<3, 3>().trace() / 3)};
+}
+
+QString degrees(double radians) {
+    return QString::number(radians / kDegree, 'f', 2);
+}
+
+/// Median and largest.
+QString spreadOf(std::vector<double> sigmas, QString (*write)(double)) {
+    if (sigmas.empty())
+        return tr("–");
+    std::sort(sigmas.begin(), sigmas.end());
+    return tr("%1 (%2)").arg(write(sigmas[sigmas.size() / 2]), write(sigmas.back()));
+}
+
 QString patches(const BodyModel& body) {
     QString rows;
-    for (const BodyPatch& patch : body.patches)
-        rows +=
-            row({QString::number(patch.id.value), QString::number(patch.origin.value),
-                 QString::number(patch.modules.size()), QString::number(patch.views.size()), escaped(patch.status)});
-    return table({tr("Patch"), tr("Origin"), tr("Modules"), tr("Views"), tr("Status")}, rows);
+    for (const BodyPatch& patch : body.patches) {
+        std::vector<double> positions;
+        std::vector<double> rotations;
+        for (const BodyModule& module : body.modules) {
+            const Sigma sigma = sigmaOf(module);
+            if (module.patch != patch.id || !sigma.position)
+                continue;
+            positions.push_back(*sigma.position);
+            rotations.push_back(*sigma.rotation);
+        }
+        rows += row({QString::number(patch.id.value), QString::number(patch.origin.value),
+                     QString::number(patch.modules.size()), QString::number(patch.views.size()),
+                     spreadOf(std::move(positions), millimetres), spreadOf(std::move(rotations), degrees),
+                     escaped(patch.status)});
+    }
+    return table({tr("Patch"), tr("Origin"), tr("Modules"), tr("Views"), tr("σ, mm"), tr("σ, °"), tr("Status")}, rows);
 }
 
 QString views(const BodyModel& body) {
@@ -102,11 +157,9 @@ QString modules(const BodyModel& body) {
         } else {
             cells << tr("–") << tr("–") << tr("–");
         }
-        const auto& covariance = module.covariance;
-        cells << (covariance ? millimetres(std::sqrt(covariance->bottomRightCorner<3, 3>().trace() / 3)) : tr("–"))
-              << (covariance
-                      ? QString::number(std::sqrt(covariance->topLeftCorner<3, 3>().trace() / 3) / kDegree, 'f', 2)
-                      : tr("–"))
+        const Sigma sigma = sigmaOf(module);
+        cells << (sigma.position ? millimetres(*sigma.position) : tr("–"))
+              << (sigma.rotation ? degrees(*sigma.rotation) : tr("–"))
               << (!module.T_body_module ? escaped(module.status)
                   : module.seen         ? tr("pictures")
                                         : tr("gravity and links"));
@@ -119,31 +172,38 @@ QString modules(const BodyModel& body) {
 
 }  // namespace
 
-QString reportHtml(const BodyModel& body, const QString& when) {
+QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
     std::vector<std::string> reasons = body.quality.warnings;
-    reasons.insert(reasons.end(), body.quality.missing.begin(), body.quality.missing.end());
+    for (const auto* more : {&body.quality.missing, &facts.shortfalls})
+        reasons.insert(reasons.end(), more->begin(), more->end());
     QString html = QStringLiteral(
                        "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>%1</title>\n"
                        "<style>body { font-family: sans-serif; margin: 2em; } table { border-collapse: "
                        "collapse; } th { text-align: left; }</style></head><body>\n")
                        .arg(tr("Calibration of a robot skin"));
-    html += QStringLiteral("<h1>%1</h1>\n<p>%2</p>\n").arg(tr("Calibration of a robot skin"), when.toHtmlEscaped());
+    html +=
+        QStringLiteral("<h1>%1</h1>\n<p>%2</p>\n").arg(tr("Calibration of a robot skin"), facts.when.toHtmlEscaped());
     html += QStringLiteral("<p><b>%1</b></p>\n")
                 .arg(tr("Verdict: %1").arg(QString::fromUtf8(name(body.quality.trust).data())));
     html += reasons.empty() ? QStringLiteral("<p>%1</p>\n").arg(tr("Nothing is missing, and nothing disagrees."))
                             : list(reasons);
     html += heading(tr("Made by")) + origin(body.generator);
+    if (facts.camera)
+        html += heading(tr("Camera")) + camera(facts);
     html += heading(tr("Quality")) + figures(body.quality);
-    html += heading(tr("Patches")) + patches(body) + heading(tr("Views")) + views(body);
-    html += heading(tr("Modules")) +
-            QStringLiteral("<p>%1</p>\n")
-                .arg(tr("Positions in the body frame (%1). σ is one standard deviation per axis.")
-                         .arg(escaped(body.body_frame))) +
-            modules(body);
+    html += heading(tr("Patches")) +
+            QStringLiteral("<p>%1</p>\n").arg(tr("σ: of its modules the median one and, in brackets, the largest.")) +
+            patches(body) + heading(tr("Views")) + views(body);
+    html +=
+        heading(tr("Modules")) +
+        QStringLiteral("<p>%1</p>\n")
+            .arg(tr("Positions in the body frame (%1). σ is one standard deviation per axis, of position and rotation.")
+                     .arg(escaped(body.body_frame))) +
+        modules(body);
     return html + QStringLiteral("</body></html>\n");
 }
 
-QByteArray reportPdf(const BodyModel& body, const QString& when) {
+QByteArray reportPdf(const BodyModel& body, const ReportFacts& facts) {
     QByteArray bytes;
     QBuffer buffer(&bytes);
     buffer.open(QIODevice::WriteOnly);
@@ -157,7 +217,7 @@ QByteArray reportPdf(const BodyModel& body, const QString& when) {
     font.setPointSize(9);
     document.setDefaultFont(font);
     document.documentLayout()->setPaintDevice(&writer);
-    document.setHtml(reportHtml(body, when));
+    document.setHtml(reportHtml(body, facts));
     document.setDocumentMargin(0);
     document.setPageSize(QSizeF(writer.width(), writer.height()));
     QPainter painter(&writer);

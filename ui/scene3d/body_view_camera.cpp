@@ -63,7 +63,12 @@ std::vector<Vector3d> BodyViewWidget::bodyPoints() const {
 }
 
 void BodyViewWidget::fitView() {
-    lookAt(bodyPoints(), false);
+    std::vector<Vector3d> points = bodyPoints();
+    if (layout_.anyPlaced && !meshBox_.isEmpty()) {
+        for (int corner = 0; corner < 8; ++corner)
+            points.emplace_back(meshBox_.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+    }
+    lookAt(points, false);
     // The direction is the user's, and kept.
     movedByUser_ = true;
 }

@@ -7,6 +7,7 @@
 #include <QPainter>
 #include <QResizeEvent>
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "ui/scene3d/body_actors.h"
@@ -144,6 +145,13 @@ void BodyViewWidget::setSelected(std::vector<ModuleId> modules) {
 
 void BodyViewWidget::setMesh(vtkPolyData* mesh) {
     isMeshShown_ = mesh != nullptr;
+    meshBox_.setEmpty();
+    if (mesh != nullptr && mesh->GetNumberOfPoints() > 0) {
+        std::array<double, 6> bounds{};
+        mesh->GetBounds(bounds.data());
+        meshBox_.extend(Vector3d(bounds[0], bounds[2], bounds[4]));
+        meshBox_.extend(Vector3d(bounds[1], bounds[3], bounds[5]));
+    }
     actors_->setMesh(mesh);
     scene_->requestDraw();
 }

@@ -81,7 +81,7 @@ class BodyViewWidget : public QWidget {
     /// What 0 and 1 of setCellValues stand for.
     void setValueWords(const QString& title, const QString& low, const QString& high);
 
-    /// Moves the camera, in the direction it looks, to where it has the whole body in view.
+    /// Moves the camera, in the direction it looks, to where it has the whole body in view, and the mesh about it.
     void fitView();
     /// The same with all cameras, the guide's included.
     void fitEverything();
@@ -149,6 +149,7 @@ class BodyViewWidget : public QWidget {
     bool dark_ = true;
     bool measuring_ = false;
     bool isMeshShown_ = false;
+    Eigen::AlignedBox3d meshBox_;  ///< empty where there is none
     bool movedByUser_ = false;
     bool focusFrame_ = false;
     std::optional<Isometry3d> guideCamera_;

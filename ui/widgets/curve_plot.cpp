@@ -29,8 +29,9 @@ void CurvePlot::setValues(std::vector<std::optional<double>> values) {
     update();
 }
 
-void CurvePlot::setGoal(std::optional<double> goal) {
+void CurvePlot::setGoal(std::optional<double> goal, const QString& meaning) {
     goal_ = goal;
+    goalText_ = meaning;
     update();
 }
 
@@ -75,6 +76,8 @@ void CurvePlot::paintEvent(QPaintEvent*) {
     if (goal_) {
         painter.setPen(QPen(theme.attention, 1.5, Qt::DashLine));
         painter.drawLine(QPointF(plot.left(), y(*goal_)), QPointF(plot.right(), y(*goal_)));
+        painter.drawText(QRectF(plot.left(), y(*goal_) - line - 2, plot.width(), line),
+                         Qt::AlignRight | Qt::AlignBottom, goalText_);
     }
     QPainterPath path;
     bool isDrawing = false;

@@ -18,8 +18,9 @@ class CurvePlot : public QWidget {
     void setUnit(const QString& unit);
     /// One after the other, from 1 on; nothing where there is no number yet. Positive.
     void setValues(std::vector<std::optional<double>> values);
-    /// A line to get below.
-    void setGoal(std::optional<double> goal);
+    /// A line to get below, with what it means written above it.
+    void setGoal(std::optional<double> goal, const QString& meaning = {});
+    [[nodiscard]] const QString& goalText() const { return goalText_; }
 
     [[nodiscard]] QSize sizeHint() const override { return {260, 170}; }
     [[nodiscard]] QSize minimumSizeHint() const override { return {160, 110}; }
@@ -28,7 +29,7 @@ class CurvePlot : public QWidget {
     void paintEvent(QPaintEvent* event) override;
 
   private:
-    QString title_, abscissa_, unit_;
+    QString title_, abscissa_, unit_, goalText_;
     std::vector<std::optional<double>> values_;
     std::optional<double> goal_;
 };

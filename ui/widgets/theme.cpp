@@ -43,6 +43,7 @@ QString Theme::styleSheet() const {
                "QLabel#pageTitle { font-size: 17pt; font-weight: 600; }"
                "QLabel#pagePurpose, QLabel[muted=\"true\"] { color: %2; }"
                "QLabel[attention=\"true\"] { color: %8; }"
+               "QLabel[good=\"true\"] { color: %4; font-weight: 600; }"
                "QLabel#instruction { font-size: 12pt; font-weight: 600; }"
                "QFrame#card { background: %3; border: 1px solid %1; border-radius: 6px; }"
                "QTableView, QListView, QPlainTextEdit { background: %3; border: 1px solid %1; border-radius: 4px; "

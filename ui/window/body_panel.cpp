@@ -33,7 +33,7 @@ BodyPanel::BodyPanel(QWidget* parent)
     measure->setCheckable(true);
     measure->setToolTip(tr("Click two modules to see how far their LEDs are apart"));
     auto* fit = new QPushButton(tr("Fit"));
-    fit->setToolTip(tr("Show the whole body (F)"));
+    fit->setToolTip(tr("Show the whole body, and the mesh about it (F)"));
     bar->addWidget(colours_);
     bar->addWidget(ellipsoids);
     bar->addStretch();

@@ -12,6 +12,7 @@
 #include "ui/presenters/problem_model.h"
 #include "ui/presenters/step_model.h"
 #include "ui/presenters/view_preview.h"
+#include "ui/window/rig_offers.h"
 
 class QAction;
 class QComboBox;
@@ -38,6 +39,8 @@ class MainWindow : public QMainWindow {
     void showStep(Step step);
     [[nodiscard]] Step step() const;
     void setDark(bool dark);
+    /// Chooses these devices, and connects the skin at once.
+    void begin(const RigOffers& offers);
     /// A recording from a file; a complaint becomes a problem.
     void openRecording(const QString& directory);
     /// Offers what an earlier run left unsaved, the newest of it.
@@ -60,6 +63,8 @@ class MainWindow : public QMainWindow {
     [[nodiscard]] QWidget* buildSteps();
     [[nodiscard]] QWidget* buildNavigation();
     void offerNewest(const SessionKeeper& keeper);
+    /// To a step so many further down.
+    void goBy(int steps);
     void showBody();
     void refresh();
     void jumpTo(int problem);
@@ -89,7 +94,7 @@ class MainWindow : public QMainWindow {
     QPushButton* back_ = nullptr;
     QPushButton* next_ = nullptr;
     QProgressBar* busy_ = nullptr;
-    QAction* dark_ = nullptr;
+    QAction* theme_ = nullptr;         ///< changes to the other
     std::optional<KeptSession> kept_;  ///< that was offered
 };
 

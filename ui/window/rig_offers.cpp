@@ -15,7 +15,8 @@ QString tr(const char* text) {
 
 }  // namespace
 
-void offerRig(Workbench& workbench, SimulatedRig& rig) {
+RigOffers offerRig(Workbench& workbench, SimulatedRig& rig) {
+    const RigOffers offers{workbench.skinOffers.size(), workbench.cameraOffers.size()};
     workbench.skinOffers.push_back({tr("Simulated arm"), tr("A skin on a simulated desk"),
                                     [&rig] { return std::make_unique<SimulatedSkin>(rig); }});
     workbench.cameraOffers.push_back({tr("Simulated webcam"), tr("It looks at the simulated desk"),
@@ -45,6 +46,7 @@ void offerRig(Workbench& workbench, SimulatedRig& rig) {
     hands.bodySurface = [&rig] { return bodySurface(rig.world()); };
     hands.intrinsics = rig.world().scenario.camera;
     workbench.hands = std::move(hands);
+    return offers;
 }
 
 }  // namespace skincal

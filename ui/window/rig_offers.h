@@ -5,8 +5,14 @@
 
 namespace skincal {
 
+/// Where a rig's devices are among what is offered.
+struct RigOffers {
+    std::size_t skin = 0;
+    std::size_t camera = 0;
+};
+
 /// Puts a simulated rig's skin and camera among what can be chosen, and lends its hands. The rig must outlive the
 /// workbench.
-void offerRig(Workbench& workbench, SimulatedRig& rig);
+RigOffers offerRig(Workbench& workbench, SimulatedRig& rig);
 
 }  // namespace skincal

@@ -100,7 +100,7 @@ class SkinClient {
     std::uint8_t epoch_ = 0;
     std::size_t cells_ = 0;
 
-    Time heard_{};   ///< when a frame came last
+    Time heard_{};  ///< when a frame came last
     Time pinged_{};
 
     SkinNetwork network_;

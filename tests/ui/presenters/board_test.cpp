@@ -8,6 +8,7 @@
 #include "tests/ui/presenters/desk.h"
 #include "ui/presenters/board_model.h"
 #include "ui/presenters/board_words.h"
+#include "ui/presenters/lens_words.h"
 
 namespace skincal {
 namespace {
@@ -93,10 +94,14 @@ TEST_F(BoardDesk, AcceptedItIsOneUndoableDecisionThatSaysWhereItIsFrom) {
     ASSERT_TRUE(desk.session().decisions().camera);
     EXPECT_EQ(desk.session().decisions().camera->fx, found.fx);
     EXPECT_THAT(desk.session().undoStack().undoText().toStdString(), testing::ContainsRegex("from [0-9]+ boards, rms"));
-    EXPECT_THAT(boards->provenanceOf(found).toStdString(), testing::HasSubstr("calibrated from"));
-    EXPECT_EQ(boards->provenanceOf(desk.rig.world().scenario.camera), "");
+    const CameraOrigin& origin = desk.session().decisions().cameraOrigin;
+    EXPECT_EQ(origin.kind, CameraOrigin::Kind::Calibrated);
+    EXPECT_EQ(origin.rms_px, boards->calibration()->rms_px);
+    EXPECT_THAT(sentenceOf(origin).toStdString(),
+                testing::MatchesRegex("calibrated from [0-9]+ boards, rms .* px, on 20..-..-.."));
     desk.session().undoStack().undo();
     EXPECT_FALSE(desk.session().decisions().camera);
+    EXPECT_EQ(desk.session().decisions().cameraOrigin, CameraOrigin());
     desk.session().undoStack().redo();
     EXPECT_EQ(desk.session().decisions().camera->fx, found.fx);
 }

@@ -124,6 +124,31 @@ TEST_F(MeshPresenterTest, SaysWhatIsWrongWithAMeshOrABody) {
     EXPECT_FALSE(presenter_.hasSimulatedBody());
 }
 
+TEST_F(MeshPresenterTest, WhatIsShownStaysUntilTheNewBodyIsComparedWhoeverLooks) {
+    open();
+    presenter_.setActive(true);
+    presenter_.open(file("body.stl", stlBytes(scaled(bodySurface(world_), 1e3))));
+    ASSERT_TRUE(waitFor([&] { return presenter_.comparison() != nullptr; }));
+    EXPECT_FALSE(presenter_.isStale());
+    presenter_.setActive(false);
+    const auto before = presenter_.comparison();
+    bool wasGone = false;
+    bool wasStale = false;
+    QObject::connect(&presenter_, &MeshPresenter::changed, &presenter_, [&] {
+        wasGone = wasGone || !presenter_.comparison();
+        wasStale = wasStale || presenter_.isStale();
+    });
+    workbench_.session().decide("drop a pose", [](Decisions& decisions) { decisions.droppedPoses.insert(1); });
+    ASSERT_TRUE(waitFor([&] { return presenter_.comparison() != before; }));
+    EXPECT_FALSE(wasGone);
+    EXPECT_TRUE(wasStale);
+    EXPECT_TRUE(presenter_.comparison());
+    EXPECT_FALSE(presenter_.isStale());
+    // Without a body there is nothing to compare.
+    workbench_.session().load({});
+    EXPECT_FALSE(presenter_.comparison());
+}
+
 TEST(AlignmentDoubts, HaveASentenceEachWithItsNumber) {
     using Kind = AlignmentDoubt::Kind;
     std::set<QString> sentences;

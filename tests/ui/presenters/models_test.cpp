@@ -98,8 +98,18 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
         // A file where a folder should be: nothing is written.
         EXPECT_NE(desk.exporter.write(format, file / "body"), "");
         EXPECT_EQ(test::readText(file), text);
-        if (desk.exporter.formats()[format].isReport)
+        if (desk.exporter.formats()[format].isReport) {
+            if (text.starts_with("<!DOCTYPE")) {
+                // As the Result page does.
+                for (const Shortfall& shortfall : desk.session().solution()->shortfalls)
+                    EXPECT_TRUE(
+                        QString::fromStdString(text).contains(QString::fromStdString(shortfall.text).toHtmlEscaped()));
+                EXPECT_EQ(text.find("Nothing is missing") == std::string::npos,
+                          !desk.session().solution()->shortfalls.empty() ||
+                              !desk.session().solution()->body.quality.warnings.empty());
+            }
             continue;
+        }
         for (const int lines : {1, 7}) {
             QString preview = desk.exporter.preview(format, lines);
             EXPECT_EQ(preview.count('\n'), lines);
@@ -173,6 +183,25 @@ TEST(DetectionModel, TellsWhichOfSeveralSpotsTheBodyTook) {
     desk.scan.detections().accept({told.module});
     ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
     EXPECT_EQ(rowOf(told).state, DetectionRow::State::Used);
+}
+
+TEST(StepModel, WhatIsUndoneLeavesAnExportUpToDate) {
+    Desk desk;
+    desk.session().load(openedFrom(recordingOf(buildWorld(*findScenario("arm"), 1))));
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    const auto state = [&] { return desk.steps.states()[static_cast<std::size_t>(Step::Export)]; };
+    EXPECT_EQ(state().status, StepStatus::ToDo);
+    desk.steps.noteExport();
+    EXPECT_EQ(state().status, StepStatus::Done);
+    desk.pose.poses().setDropped(1, true);
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_EQ(state().reason, StepReason::Changed);
+    desk.session().undoStack().undo();
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_EQ(state().status, StepStatus::Done) << "the body is the one that was exported";
+    desk.session().undoStack().redo();
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_EQ(state().reason, StepReason::Changed);
 }
 
 TEST(LinkModel, ShowsNoLinksOfAnOlderNetwork) {

@@ -2,6 +2,7 @@
 
 #include <QSignalSpy>
 
+#include "core/geometry/random.h"
 #include "tests/ui/presenters/desk.h"
 
 namespace skincal {
@@ -116,6 +117,60 @@ TEST(PosePresenter, DroppedPosesLeaveTheForecast) {
     EXPECT_EQ(desk.pose.covered(), std::vector<Vector3d>(covered.begin(), covered.begin() + 3));
     desk.session().undoStack().undo();
     EXPECT_EQ(desk.pose.forecast(), forecast);
+}
+
+TEST(PosePresenter, SaysWhenPosesSuffice) {
+    Desk desk;
+    EXPECT_EQ(desk.pose.verdict(), PoseVerdict::None);
+    EXPECT_EQ(desk.pose.verdictText(), "");
+    ASSERT_TRUE(desk.connectSkin());
+    ASSERT_TRUE(desk.capturePoses(2));
+    EXPECT_EQ(desk.pose.verdict(), PoseVerdict::TooFew);
+    ASSERT_TRUE(desk.capturePoses(5));
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_LT(*desk.pose.forecast().back(), PosePresenter::kGoodEdge);
+    EXPECT_EQ(desk.pose.verdict(), PoseVerdict::Enough);
+    EXPECT_TRUE(desk.pose.verdictText().startsWith("Enough"));
+    for (int row = 2; row < 5; ++row)
+        desk.pose.poses().setDropped(row, true);
+    EXPECT_EQ(desk.pose.verdict(), PoseVerdict::TooFew);
+    EXPECT_TRUE(desk.pose.verdictText().startsWith("Not enough"));
+}
+
+TEST(PosePresenter, PosesThatAreAlikeAreNotEnough) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    // As one who hardly turns the body would hold it.
+    Random random(1);
+    for (int pose = 0; pose < 5; ++pose) {
+        std::vector<GravityReading> readings;
+        for (const SkinModule& module : desk.session().measured().skin.modules) {
+            Vector3d g = Vector3d(0.05 * pose, 0.02 * pose * pose, 1).normalized() * 9.81;
+            readings.push_back({0, module.id, g + 0.01 * random.normal3(), std::nullopt, std::nullopt});
+        }
+        desk.session().addPose(std::move(readings));
+    }
+    EXPECT_NE(desk.pose.verdict(), PoseVerdict::Enough);
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_NE(desk.pose.verdict(), PoseVerdict::Enough);
+}
+
+TEST(PoseModel, KeepsItsRowsWhileThePosesAreTheSame) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    ASSERT_TRUE(desk.capturePoses(3));
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    PoseModel& poses = desk.pose.poses();
+    const QSignalSpy reset(&poses, &QAbstractItemModel::modelReset);
+    const QSignalSpy changed(&poses, &QAbstractItemModel::dataChanged);
+    poses.setDropped(1, true);
+    desk.session().undoStack().undo();
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    EXPECT_EQ(reset.count(), 0);
+    EXPECT_GE(changed.count(), 2);
+    ASSERT_TRUE(desk.capturePoses(4));
+    EXPECT_EQ(reset.count(), 1);
+    EXPECT_EQ(poses.rowCount(), 4);
 }
 
 TEST(FarthestDirection, IsFartherFromAllThanAnyOther) {

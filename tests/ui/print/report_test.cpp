@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace skincal {
 namespace {
 
@@ -35,14 +37,74 @@ BodyModel smallBody() {
 }
 
 TEST(Report, TellsWhatMakesACalibrationTraceable) {
-    const std::string html = reportHtml(smallBody(), "26 November 2026").toStdString();
+    const std::string html = reportHtml(smallBody(), {"26 November 2026", {}, {}, {}}).toStdString();
     for (const char* text : {"26 November 2026", "1.2.3", "joint", "SHA-256 abc123", "usable", "1 of 2", "100.00",
                              "-20.00", "750.00", "1.00", "no view shows it"})
         EXPECT_THAT(html, HasSubstr(text));
 }
 
+TEST(Report, ListsAllThatIsMissingAndPraisesOnlyWhereNothingIs) {
+    BodyModel body = smallBody();
+    const char* praise = "Nothing is missing";
+    body.quality.warnings.clear();
+    EXPECT_THAT(reportHtml(body, {"now", {}, {}, {}}).toStdString(), HasSubstr(praise));
+    const std::string html = reportHtml(body, {"now", {"patch 2 is seen in one view only"}, {}, {}}).toStdString();
+    EXPECT_THAT(html, HasSubstr("patch 2 is seen in one view only"));
+    EXPECT_THAT(html, Not(HasSubstr(praise)));
+    body.quality.missing = {"no view shows module 18"};
+    EXPECT_THAT(reportHtml(body, {"now", {}, {}, {}}).toStdString(),
+                testing::AllOf(HasSubstr("no view shows module 18"), Not(HasSubstr(praise))));
+}
+
+TEST(Report, NamesTheMethodOnce) {
+    BodyModel body = smallBody();
+    body.generator.options = {{"method", "joint"}, {"misalignment", "2"}};
+    const QString html = reportHtml(body, {"now", {}, {}, {}});
+    EXPECT_EQ(html.count("joint"), 1);
+    EXPECT_THAT(html.toStdString(), HasSubstr("misalignment"));
+}
+
+TEST(Report, TellsHowWellModulesAndPatchesAreKnown) {
+    BodyModel body = smallBody();
+    BodyPatch patch;
+    patch.id = PatchId{0};
+    patch.origin = ModuleId{17};
+    patch.status = "placed";
+    body.patches = {patch};
+    Vector6d variances;
+    // 0.5 degrees and 2 mm per axis.
+    variances << Vector3d::Constant(std::pow(0.5 * kDegree, 2)), Vector3d::Constant(4e-6);
+    BodyModule worse = body.modules.front();
+    worse.id = ModuleId{19};
+    worse.covariance = Matrix6d(variances.asDiagonal());
+    BodyModule better = body.modules.front();
+    better.id = ModuleId{20};
+    body.modules.push_back(better);
+    body.modules.push_back(worse);
+    const std::string html = reportHtml(body, {"now", {}, {}, {}}).toStdString();
+    EXPECT_THAT(html, HasSubstr("<td>2.00</td><td>0.50</td>")) << "a module's";
+    EXPECT_THAT(html, HasSubstr("<td>1.00 (2.00)</td>")) << "a patch's";
+    patch.id = PatchId{1};
+    body.patches = {patch};
+    EXPECT_THAT(reportHtml(body, {"now", {}, {}, {}}).toStdString(), HasSubstr("<td>–</td><td>–</td><td>placed</td>"));
+}
+
+TEST(Report, SaysWhereTheIntrinsicsComeFrom) {
+    CameraModel camera;
+    camera.width = 1280;
+    camera.height = 720;
+    camera.fx = 1100.25;
+    camera.distortion = {0.1, -0.05, 0, 0, 0};
+    const BodyModel body = smallBody();
+    EXPECT_THAT(reportHtml(body, {"now", {}, {}, {}}).toStdString(), Not(HasSubstr("Intrinsics")));
+    EXPECT_THAT(reportHtml(body, {"now", {}, camera, {}}).toStdString(), HasSubstr("unknown origin"));
+    EXPECT_THAT(reportHtml(body, {"now", {}, camera, "read from <cam>.yaml"}).toStdString(),
+                testing::AllOf(HasSubstr("1280 × 720"), HasSubstr("1100.25"), HasSubstr("-0.05"),
+                               HasSubstr("read from &lt;cam&gt;.yaml")));
+}
+
 TEST(Report, TextFromFilesIsNoMarkup) {
-    const std::string html = reportHtml(smallBody(), "now").toStdString();
+    const std::string html = reportHtml(smallBody(), {"now", {}, {}, {}}).toStdString();
     EXPECT_THAT(html, HasSubstr("pose 3 &amp; more"));
     EXPECT_THAT(html, HasSubstr("hex&lt;script&gt;"));
     EXPECT_THAT(html, Not(HasSubstr("<script>")));
@@ -51,10 +113,10 @@ TEST(Report, TextFromFilesIsNoMarkup) {
 TEST(Report, OfManyModulesHasManyPages) {
     BodyModel body = smallBody();
     const auto pages = [](const QByteArray& pdf) { return pdf.count("/Type /Page\n"); };
-    const auto few = pages(reportPdf(body, "now"));
+    const auto few = pages(reportPdf(body, {"now", {}, {}, {}}));
     EXPECT_GE(few, 1);
     body.modules.resize(600, body.modules.front());
-    EXPECT_GT(pages(reportPdf(body, "now")), few + 4);
+    EXPECT_GT(pages(reportPdf(body, {"now", {}, {}, {}})), few + 4);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/formats/body_json.h"
+#include "core/formats/json_cursor.h"
 #include "core/formats/truth_json.h"
 #include "core/geometry/random.h"
 #include "tests/unit/formats/temporary_directory.h"
@@ -106,6 +107,32 @@ TEST(RecordingRoundTrip, KeepsWhatItDoesNotKnow) {
     body.templates = read->skin.templates;
     const auto written = nlohmann::json::parse(bodyToJson(body, read->unknownOfTypes));
     EXPECT_EQ(written["module_types"], json["module_types"]);
+}
+
+TEST(RecordingRoundTrip, KeepsWhereTheIntrinsicsComeFrom) {
+    Recording recording = randomRecording(3);
+    // Its pictures are not on the disk.
+    recording.views.erase(recording.views.begin());
+    CameraOrigin file{CameraOrigin::Kind::File, "cam.yaml", 0, 0, "2026-11-26"};
+    CameraOrigin calibrated{CameraOrigin::Kind::Calibrated, "", 14, 0.1125, "2026-11-25"};
+    CameraOrigin nominal{CameraOrigin::Kind::Nominal, "", 0, 0, ""};
+    for (const CameraOrigin& origin : {CameraOrigin{}, file, calibrated, nominal}) {
+        recording.cameraOrigin = origin;
+        const test::TemporaryDirectory directory;
+        ASSERT_TRUE(writeRecording(recording, directory.path()));
+        const std::string text = test::readText(directory / "recording.json");
+        EXPECT_EQ(text.find("\"origin\"") != std::string::npos, origin.kind != CameraOrigin::Kind::Unknown);
+        const auto back = readRecording(directory.path());
+        ASSERT_TRUE(back) << back.error().message();
+        EXPECT_EQ(back->cameraOrigin, origin);
+    }
+    // What can't be is refused, with its place.
+    for (const char* bad : {R"({"kind": "guessed"})", R"({"kind": "file"})", R"({"kind": "calibrated", "boards": 0,
+                            "rms_px": 1})",
+                            R"({"kind": "calibrated", "boards": 3, "rms_px": -1})", R"({})", "7"}) {
+        const auto json = nlohmann::json::parse(bad);
+        EXPECT_THROW((void)readCameraOrigin(JsonCursor(json, "recording.json")), FileErrorException) << bad;
+    }
 }
 
 TEST(RecordingRoundTrip, DoesNotOverwriteUnasked) {

@@ -89,7 +89,7 @@ TEST(Steps, HaveTheStatesOfTheTable) {
         {"complete", Step::Scan, [](Progress&) {}, {Done, Reason::None}},
         {"empty", Step::Scan, [](Progress&) {}, {Blocked, Reason::NoSkin}, empty},
         {"no camera yet", Step::Scan, [](Progress& p) { p.hasIntrinsics = false; }, {Blocked, Reason::NoIntrinsics}},
-        {"none", Step::Scan, [](Progress& p) { p.views = 0; }, {ToDo, Reason::NoViews}},
+        {"none", Step::Scan, [](Progress& p) { p.views = 0; }, {ToDo, Reason::FirstView}},
         {"one", Step::Scan, [](Progress& p) { p.views = 1; }, {Done, Reason::None}},
         {"skin lost", Step::Scan, [](Progress& p) { p.views = 0, p.isSkinLost = true; }, {Blocked, Reason::SkinLost}},
         {"camera lost",

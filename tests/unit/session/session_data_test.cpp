@@ -32,6 +32,17 @@ TEST(SessionData, ARecordingTakenApartIsTheSameAgain) {
     }
 }
 
+TEST(SessionData, WhereTheIntrinsicsComeFromIsKeptWithThem) {
+    Recording recording = recordingOf(test::smallWorld(1, ScanKind::Detections));
+    recording.cameraOrigin = {CameraOrigin::Kind::Calibrated, "", 14, 0.11, "2026-11-26"};
+    OpenedRecording opened = openedFrom(recording);
+    EXPECT_EQ(opened.decisions.cameraOrigin, recording.cameraOrigin);
+    EXPECT_EQ(recordingOf(opened.measured, opened.decisions).cameraOrigin, recording.cameraOrigin);
+    Decisions other = opened.decisions;
+    other.cameraOrigin.boards = 15;
+    EXPECT_FALSE(other == opened.decisions) << "calibrated anew it is another decision";
+}
+
 TEST(SessionData, ARecordingKeepsEveryDecisionAndGivesTheSameMeasurements) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         Random random(seed);

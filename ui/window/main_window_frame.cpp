@@ -1,0 +1,199 @@
+// What the window is made of.
+
+#include <QAction>
+#include <QComboBox>
+#include <QListView>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QSplitter>
+#include <QStackedWidget>
+#include <QStatusBar>
+#include <QToolBar>
+#include <QVBoxLayout>
+
+#include "ui/pages/camera_page.h"
+#include "ui/pages/connect_page.h"
+#include "ui/pages/demo_page.h"
+#include "ui/pages/export_page.h"
+#include "ui/pages/pose_page.h"
+#include "ui/pages/result_page.h"
+#include "ui/pages/scan_page.h"
+#include "ui/pages/views_page.h"
+#include "ui/scene3d/body_view_widget.h"
+#include "ui/widgets/theme.h"
+#include "ui/window/body_panel.h"
+#include "ui/window/file_actions.h"
+#include "ui/window/main_window.h"
+#include "ui/window/step_delegate.h"
+
+namespace skincal {
+namespace {
+
+/// No page makes the window larger than its screen.
+QWidget* scrolled(QWidget* page) {
+    auto* area = new QScrollArea;
+    area->setWidget(page);
+    area->setWidgetResizable(true);
+    area->setFrameShape(QFrame::NoFrame);
+    area->setFocusPolicy(Qt::NoFocus);
+    return area;
+}
+
+}  // namespace
+
+void MainWindow::buildPages() {
+    stack_ = new QStackedWidget;
+    auto* connectPage = new ConnectPage(workbench_, connection_);
+    auto* posePage = new PosePage(pose_);
+    auto* cameraPage = new CameraPage(workbench_, scan_);
+    auto* scanPage = new ScanPage(workbench_, scan_);
+    auto* viewsPage = new ViewsPage(views_, scan_, preview_);
+    result_ = new ResultPage(workbench_, mesh_);
+    auto* exportPage = new ExportPage(export_);
+    auto* demoPage = new DemoPage(demo_);
+    pages_ = {connectPage, posePage, cameraPage, scanPage, viewsPage, result_, exportPage, demoPage};
+    for (Page* page : pages_) {
+        if (page != nullptr)
+            stack_->addWidget(scrolled(page));
+    }
+    connect(connectPage, &ConnectPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
+    connect(posePage, &PosePage::modulesSelected, this, &MainWindow::showModules);
+    connect(scanPage, &ScanPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
+    connect(result_, &ResultPage::moduleSelected, this, [this](ModuleId module) { showModules({module}); });
+    connect(viewsPage, &ViewsPage::scanAsked, this, [this] {
+        showStep(Step::Scan);
+        scan_.start();
+    });
+    connect(cameraPage, &CameraPage::failed, this,
+            [this](const QString& why) { problems_.setNotice(why, Step::Camera); });
+    connect(exportPage, &ExportPage::failed, this,
+            [this](const QString& why) { problems_.setNotice(why, Step::Export); });
+    connect(&export_, &ExportPresenter::written, this, [this] {
+        problems_.clearNotice();
+        steps_.noteExport();
+    });
+}
+
+QWidget* MainWindow::buildSteps() {
+    stepList_ = new QListView;
+    stepList_->setObjectName(QStringLiteral("steps"));
+    stepList_->setAccessibleName(tr("Steps"));
+    stepList_->setModel(&steps_);
+    stepList_->setItemDelegate(new StepDelegate(stepList_));
+    stepList_->setFrameShape(QFrame::NoFrame);
+    stepList_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    stepList_->setMinimumWidth(210);
+    stepList_->setMaximumWidth(290);
+    connect(stepList_->selectionModel(), &QItemSelectionModel::currentChanged, this, [this](const QModelIndex& to) {
+        const auto row = static_cast<std::size_t>(to.row());
+        for (std::size_t i = 0; i < pages_.size(); ++i) {
+            if (pages_.at(i) != nullptr && i != row)
+                pages_.at(i)->setActive(false);
+        }
+        if (pages_.at(row) == nullptr)
+            return;
+        stack_->setCurrentIndex(static_cast<int>(row));
+        pages_.at(row)->setActive(true);
+        refresh();
+    });
+    return stepList_;
+}
+
+QWidget* MainWindow::buildNavigation() {
+    auto* bar = new QWidget;
+    auto* row = new QHBoxLayout(bar);
+    row->setContentsMargins(20, 4, 20, 12);
+    back_ = new QPushButton;
+    back_->setToolTip(tr("To the step before (Alt+Left)"));
+    back_->setShortcut(QKeySequence(Qt::ALT | Qt::Key_Left));
+    next_ = new QPushButton;
+    next_->setObjectName(QStringLiteral("next"));
+    next_->setToolTip(tr("To the next step (Alt+Right)"));
+    next_->setShortcut(QKeySequence(Qt::ALT | Qt::Key_Right));
+    row->addWidget(back_);
+    row->addStretch();
+    row->addWidget(next_);
+    connect(back_, &QPushButton::clicked, this, [this] { goBy(-1); });
+    connect(next_, &QPushButton::clicked, this, [this] { goBy(1); });
+    return bar;
+}
+
+void MainWindow::buildFrame() {
+    auto* centre = new QWidget;
+    auto* column = new QVBoxLayout(centre);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    column->addWidget(stack_, 1);
+    column->addWidget(buildNavigation());
+
+    auto* across = new QSplitter(Qt::Horizontal);
+    across->addWidget(buildSteps());
+    across->addWidget(centre);
+    auto* panel = new BodyPanel;
+    body_ = &panel->view();
+    colours_ = &panel->colours();
+    connect(&workbench_.session(), &Session::solvingChanged, panel,
+            [this, panel](bool solving) { panel->setStale(solving && workbench_.session().solution() != nullptr); });
+    connect(body_, &BodyViewWidget::moduleClicked, this, [this](ModuleId module) {
+        showModules({module});
+        connection_.blink(module);
+    });
+    across->addWidget(panel);
+    across->setStretchFactor(0, 0);
+    across->setStretchFactor(1, 5);
+    across->setStretchFactor(2, 4);
+    across->setSizes({230, 680, 530});
+    across->setChildrenCollapsible(false);
+
+    problemList_ = new QListView;
+    problemList_->setObjectName(QStringLiteral("problems"));
+    problemList_->setAccessibleName(tr("Problems"));
+    problemList_->setModel(&problems_);
+    problemList_->setItemDelegate(new ProblemDelegate(problemList_));
+    problemList_->setFrameShape(QFrame::NoFrame);
+    problemList_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    problemList_->setToolTip(tr("What is wrong or missing; activate one to go where it is mended"));
+    connect(problemList_, &QListView::activated, this, [this](const QModelIndex& index) { jumpTo(index.row()); });
+    connect(problemList_, &QListView::clicked, this, [this](const QModelIndex& index) { jumpTo(index.row()); });
+
+    auto* down = new QSplitter(Qt::Vertical);
+    down->addWidget(across);
+    down->addWidget(problemList_);
+    down->setStretchFactor(0, 1);
+    down->setSizes({760, 96});
+    down->setCollapsible(0, false);
+    setCentralWidget(down);
+
+    busy_ = new QProgressBar;
+    busy_->setRange(0, 0);
+    busy_->setMaximumWidth(120);
+    busy_->setVisible(false);
+    busy_->setAccessibleName(tr("Solving"));
+    statusBar()->addPermanentWidget(busy_);
+}
+
+void MainWindow::buildToolBar() {
+    QToolBar* bar = addToolBar(tr("Tools"));
+    bar->setMovable(false);
+    bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
+    files_.addTo(*bar);
+    bar->addSeparator();
+    QUndoStack& undo = workbench_.session().undoStack();
+    auto* undoAction = undo.createUndoAction(this, tr("Undo"));
+    undoAction->setShortcut(QKeySequence::Undo);
+    undoAction->setObjectName(QStringLiteral("undo"));
+    auto* redoAction = undo.createRedoAction(this, tr("Redo"));
+    redoAction->setShortcut(QKeySequence::Redo);
+    redoAction->setObjectName(QStringLiteral("redo"));
+    bar->addAction(undoAction);
+    bar->addAction(redoAction);
+    auto* space = new QWidget;
+    space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+    bar->addWidget(space);
+    theme_ = bar->addAction(QString());
+    theme_->setObjectName(QStringLiteral("theme"));
+    connect(theme_, &QAction::triggered, this, [this] { setDark(!Theme::current().isDark); });
+}
+
+}  // namespace skincal

@@ -61,14 +61,9 @@ const ScannedView* Session::findView(const std::string& name) const {
 }
 
 void Session::adoptSkin(Skin skin) {
-    const auto idsOf = [](const Skin& of) {
-        std::set<ModuleId> ids;
-        for (const SkinModule& module : of.modules)
-            ids.insert(module.id);
-        return ids;
-    };
-    const bool isOther = idsOf(skin) != idsOf(measured_.skin);
-    measured_.skin = std::move(skin);
+    auto same = sameSkin(measured_.skin, skin);
+    const bool isOther = !same;
+    measured_.skin = same ? std::move(*same) : std::move(skin);
     if (isOther) {
         measured_.gravity.clear();
         measured_.views.clear();

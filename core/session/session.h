@@ -37,8 +37,8 @@ class Session : public QObject {
 
     [[nodiscard]] const ScannedView* findView(const std::string& name) const;
 
-    /// The network as explored. Poses and views stay where it is the same modules; of others they are forgotten, since
-    /// nothing tells what became of these.
+    /// The network as explored. Poses and views stay where it is the same skin (sameSkin); of another they are
+    /// forgotten, since nothing tells what became of its modules.
     void adoptSkin(Skin skin);
     /// @return the new pose's number; `readings` get it.
     int addPose(std::vector<GravityReading> readings);

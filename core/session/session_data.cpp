@@ -1,6 +1,8 @@
 #include "core/session/session_data.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <tuple>
 
 namespace skincal {
@@ -143,6 +145,43 @@ std::vector<int> posesOf(const Measured& measured, const Decisions& decisions) {
             poses.insert(reading.pose);
     }
     return {poses.begin(), poses.end()};
+}
+
+std::optional<Skin> sameSkin(const Skin& before, const Skin& now) {
+    std::map<ModuleId, std::string> present;
+    bool isKnown = false;
+    for (const SkinModule& module : now.modules)
+        present.emplace(module.id, module.uniqueId);
+    std::vector<SkinModule> missing;
+    for (const SkinModule& module : before.modules) {
+        const auto found = present.find(module.id);
+        if (found == present.end())
+            missing.push_back(module);
+        else if (found->second != module.uniqueId)
+            return std::nullopt;  // another module under this number
+        else
+            isKnown = isKnown || !module.uniqueId.empty();
+    }
+    if (missing.empty() && before.modules.size() == now.modules.size())
+        return now;
+    if (!isKnown)
+        return std::nullopt;
+    Skin joined = now;
+    std::set<ModuleId> gone;
+    for (const SkinModule& module : missing) {
+        const ModuleTemplate& type = before.templates[module.type];
+        const auto known = std::find_if(joined.templates.begin(), joined.templates.end(),
+                                        [&](const ModuleTemplate& t) { return t.name == type.name; });
+        const auto place = static_cast<std::size_t>(known - joined.templates.begin());
+        if (known == joined.templates.end())
+            joined.templates.push_back(type);
+        joined.modules.push_back({module.id, place, module.uniqueId});
+        gone.insert(module.id);
+    }
+    for (const Link& link : before.links)
+        if (gone.contains(link.a) || gone.contains(link.b))
+            joined.links.push_back(link);
+    return joined;
 }
 
 }  // namespace skincal

@@ -81,6 +81,11 @@ struct OpenedRecording {
 };
 [[nodiscard]] OpenedRecording openedFrom(const Recording& recording);
 
+/// The skin as it is now, where it is the one that was measured before: the same modules; or some that are known by
+/// their unique ids, while others do not answer today or have been added. Modules that do not answer stay in it, with
+/// their links. Nothing where it is another skin.
+[[nodiscard]] std::optional<Skin> sameSkin(const Skin& before, const Skin& now);
+
 /// Numbers of the poses that count, rising.
 [[nodiscard]] std::vector<int> posesOf(const Measured& measured, const Decisions& decisions);
 

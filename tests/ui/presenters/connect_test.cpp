@@ -65,6 +65,22 @@ TEST(ConnectPresenter, SaysThatTheSkinWasUnplugged) {
     }
 }
 
+TEST(ConnectPresenter, ConnectsAgainOnceTheSkinIsBack) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    ASSERT_TRUE(desk.capturePoses(1));
+    desk.rig.pullSkin();
+    ASSERT_TRUE(waitFor([&] { return desk.connection.state().phase == Phase::Lost; }));
+    desk.rig.plugSkin();
+    emit desk.workbench.skin()->cameBack();
+    ASSERT_TRUE(waitFor([&] { return desk.workbench.isSkinReady(); }));
+    EXPECT_EQ(posesOf(desk.session().measured(), {}).size(), 1U) << "it is the same session";
+    // The operator's word counts: what he has disconnected stays so.
+    desk.connection.disconnectSkin();
+    emit desk.workbench.skin()->cameBack();
+    EXPECT_EQ(desk.connection.state().phase, Phase::Disconnected);
+}
+
 TEST(ConnectPresenter, HasASentenceForEveryFault) {
     using Fault = Connection::Fault;
     EXPECT_TRUE(sentenceOf({Phase::Connected, 5}, "late words").isEmpty());

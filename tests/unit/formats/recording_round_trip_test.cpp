@@ -17,7 +17,7 @@ Recording randomRecording(std::uint64_t seed) {
     Recording r;
     r.skin.templates = {paperHexagon(), triangleTemplate()};
     for (std::uint32_t i = 0; i < 12; ++i)
-        r.skin.modules.push_back({ModuleId(3 * i + 1), random.index(2)});
+        r.skin.modules.push_back({ModuleId(3 * i + 1), random.index(2), i % 3 == 0 ? "" : "00ff" + std::to_string(i)});
     for (std::uint32_t i = 0; i + 1 < 12; ++i) {
         Link link{ModuleId(3 * i + 1), 0, ModuleId(3 * i + 4), 1};
         if (random.uniform() < 0.5)
@@ -62,6 +62,7 @@ TEST(RecordingRoundTrip, KeepsEverythingToTheLastBit) {
         for (std::size_t i = 0; i < a.skin.modules.size(); ++i) {
             EXPECT_EQ(b->skin.modules[i].id, a.skin.modules[i].id);
             EXPECT_EQ(b->skin.modules[i].type, a.skin.modules[i].type);
+            EXPECT_EQ(b->skin.modules[i].uniqueId, a.skin.modules[i].uniqueId);
         }
         for (std::size_t t = 0; t < 2; ++t) {
             EXPECT_EQ(b->skin.templates[t].ports, a.skin.templates[t].ports);

@@ -22,6 +22,53 @@ std::string textOfRecording(const Recording& r) {
     return text.str();
 }
 
+/// Three in a row, with or without unique ids.
+Skin threeInARow(bool haveUniqueIds) {
+    Skin skin;
+    skin.templates = {paperHexagon()};
+    for (const std::uint32_t id : {5U, 7U, 9U})
+        skin.modules.push_back({ModuleId(id), 0, haveUniqueIds ? "cell" + std::to_string(id) : ""});
+    skin.links = {{ModuleId(5), 0, ModuleId(7), 3, {}}, {ModuleId(7), 0, ModuleId(9), 3, {}}};
+    return skin;
+}
+
+TEST(SameSkin, AModuleThatDoesNotAnswerTodayStaysWithItsLinks) {
+    const Skin before = threeInARow(true);
+    Skin now = before;
+    now.modules.pop_back();
+    now.links.pop_back();
+    const auto same = sameSkin(before, now);
+    ASSERT_TRUE(same);
+    EXPECT_EQ(same->modules.size(), 3U);
+    EXPECT_EQ(same->links.size(), 2U);
+    EXPECT_EQ(same->templateOf(2).name, "hex");
+    // And is there again as it was.
+    EXPECT_EQ(sameSkin(*same, before)->links.size(), 2U);
+}
+
+TEST(SameSkin, MayGrow) {
+    Skin now = threeInARow(true);
+    now.modules.push_back({ModuleId(11), 0, "cell11"});
+    const auto same = sameSkin(threeInARow(true), now);
+    ASSERT_TRUE(same);
+    EXPECT_EQ(same->modules.size(), 4U);
+}
+
+TEST(SameSkin, WithoutUniqueIdsAllModulesHaveToBeThere) {
+    const Skin before = threeInARow(false);
+    EXPECT_TRUE(sameSkin(before, before));
+    Skin now = before;
+    now.modules.pop_back();
+    EXPECT_FALSE(sameSkin(before, now));
+}
+
+TEST(SameSkin, AnotherModuleUnderAKnownNumberIsAnotherSkin) {
+    Skin now = threeInARow(true);
+    now.modules[1].uniqueId = "stranger";
+    EXPECT_FALSE(sameSkin(threeInARow(true), now));
+    EXPECT_FALSE(sameSkin(Skin{}, now));
+}
+
 TEST(SessionData, ARecordingTakenApartIsTheSameAgain) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         for (const ScanKind scan : {ScanKind::Detections, ScanKind::Coded}) {

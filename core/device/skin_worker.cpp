@@ -105,7 +105,6 @@ void SkinWorker::close() {
     }
     streamsRest_ = false;
     streamsTouch_ = false;
-    exploring_ = false;
 }
 
 void SkinWorker::lose(LineFault fault, const QString& detail) {
@@ -148,7 +147,6 @@ void SkinWorker::pump() {
 void SkinWorker::explore() {
     if (!client_)
         return;
-    exploring_ = true;
     client_->explore(now());
     pump();
 }
@@ -229,7 +227,6 @@ void SkinWorker::onCell(const NetworkCell& cell) {
 }
 
 void SkinWorker::onExplored(const SkinNetwork& network) {
-    exploring_ = false;
     emit explored(network);
     QTimer::singleShot(0, this, [this] {
         if (streamsRest_)

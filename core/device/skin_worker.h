@@ -73,7 +73,6 @@ class SkinWorker : public QObject, private SkinListener {
     QTimer timer_;
     QTimer flush_;
     QTimer watch_;  ///< for a port that was lost
-    bool exploring_ = false;
     bool streamsRest_ = false;
     bool streamsTouch_ = false;
     std::map<CellNumber, RestReading> readings_;

@@ -161,7 +161,7 @@ void SkinClient::takeLocal(const FrameHeader& header, std::string_view payload, 
             // It took us for somebody who came late: some other computer explores, or an old frame was about.
             if (const auto explored = parse<wire::Explored>(payload);
                 explored && header.epoch == epoch_ && phase_ == Phase::Flooding && !explored->child())
-                explore(now);
+                due_ = now;
             return;
         case FrameType::Tallied:
             tallied(payload, now);
@@ -257,12 +257,12 @@ void SkinClient::describe(Time now) {
         std::erase_if(again, [&](CellNumber cell) { return !described_[cell]; });
     }
     if (again.empty())
-        finishExploration(now);
+        finishExploration();
     else
         info_.emplace(std::move(again), kPatience, now);
 }
 
-void SkinClient::finishExploration(Time) {
+void SkinClient::finishExploration() {
     info_.reset();
     for (std::size_t number = 1; number <= cells_; ++number)
         if (!described_[number])

@@ -79,7 +79,7 @@ class SkinClient {
     void takeTouches(std::string_view payload, Time when);
     void counted(std::size_t cells, Time now);
     void describe(Time now);
-    void finishExploration(Time now);
+    void finishExploration();
     void tallied(std::string_view payload, Time now);
     void showAgain(Time now);
     void pollCells(int subject, std::optional<CellPoll>& poll, Time now);

@@ -1,0 +1,119 @@
+// Skins that are unplugged at any moment, through a real pseudo-terminal. In full with SKINCAL_UNPLUGS=1000.
+
+#include <gtest/gtest.h>
+
+#include <QCoreApplication>
+#include <QDir>
+#include <QElapsedTimer>
+#include <QTemporaryDir>
+#include <cstdlib>
+#include <iostream>
+#include <set>
+
+#include "core/device/protocol_skin.h"
+#include "core/rig/pseudo_terminal.h"
+#include "core/rig/wired_skin.h"
+#include "tests/wait_for.h"
+
+namespace skincal {
+namespace {
+
+using test::waitFor;
+
+int unplugs() {
+    const char* text = std::getenv("SKINCAL_UNPLUGS");
+    return text ? std::atoi(text) : 50;
+}
+
+void letPass(int milliseconds) {
+    QElapsedTimer timer;
+    timer.start();
+    while (timer.elapsed() < milliseconds)
+        QCoreApplication::processEvents(QEventLoop::AllEvents, milliseconds);
+}
+
+TEST(Unplug, AtAnyMomentIsNoticedAndTheSameModulesComeBack) {
+    SimulatedRig rig(*findScenario("coded"), 3);
+    WiredSkin wired(rig, {});
+    const QTemporaryDir directory;
+    const QString link = QDir(directory.path()).filePath(QStringLiteral("skin"));
+    PseudoTerminal terminal;
+    QObject::connect(&terminal, &PseudoTerminal::received, &wired, &WiredSkin::receive);
+    QObject::connect(&wired, &WiredSkin::sent, &terminal, &PseudoTerminal::write);
+    ASSERT_EQ(terminal.open(link), QString());
+
+    ProtocolSkin device(parseLineAddress(link).value(), {paperHexagon(), triangleTemplate(), rectangleTemplate()});
+    std::map<std::string, ModuleId> first;
+    std::set<ModuleId> known;
+    bool isReady = false;
+    bool hasFailed = false;
+    std::size_t strangers = 0;
+    QObject::connect(&device, &SkinDevice::opened, &device, [&] { device.explore(); });
+    QObject::connect(&device, &SkinDevice::failed, &device, [&](const QString&) {
+        hasFailed = true;
+        isReady = false;
+    });
+    QObject::connect(&device, &SkinDevice::cameBack, &device, [&] { device.open(); });
+    QObject::connect(&device, &SkinDevice::explored, &device, [&](const Skin& skin) {
+        for (const SkinModule& module : skin.modules) {
+            const auto [entry, isNew] = first.emplace(module.uniqueId, module.id);
+            strangers += entry->second != module.id;
+            known.insert(module.id);
+        }
+        isReady = skin.modules.size() == rig.world().skin.modules.size();
+        device.streamAcceleration(true);
+    });
+    // No reading of a module that isn't there.
+    QObject::connect(&device, &SkinDevice::accelerationArrived, &device, [&](const AccelerationSample& sample) {
+        for (const auto& reading : sample.readings)
+            strangers += !known.contains(reading.module);
+    });
+
+    Random chance(1, "unplugs");
+    double slowestNotice = 0;
+    double slowestReturn = 0;
+    // Unplugged before it was open, nobody watches for it: the operator connects again.
+    QTimer operatorsHand;
+    QObject::connect(&operatorsHand, &QTimer::timeout, &device, [&] {
+        if (!isReady)
+            device.open();
+    });
+    operatorsHand.start(1000);
+    device.open();
+    ASSERT_TRUE(waitFor([&] { return isReady; }));
+    for (int round = 0; round < unplugs(); ++round) {
+        letPass(static_cast<int>(60 * chance.uniform()));
+        if (chance.uniform() < 0.5)
+            device.light({{*known.begin(), std::nullopt}});
+        hasFailed = false;
+        QElapsedTimer timer;
+        timer.start();
+        terminal.close();
+        ASSERT_TRUE(waitFor([&] { return hasFailed; })) << round;
+        slowestNotice = std::max(slowestNotice, 1e-3 * static_cast<double>(timer.elapsed()));
+        // A loose plug: in and out, while it is opened and explored.
+        while (chance.uniform() < 0.4) {
+            ASSERT_EQ(terminal.open(link), QString());
+            letPass(static_cast<int>(700 * chance.uniform()));
+            terminal.close();
+            letPass(static_cast<int>(30 * chance.uniform()));
+        }
+        ASSERT_EQ(terminal.open(link), QString());
+        timer.restart();
+        ASSERT_TRUE(waitFor([&] { return isReady; })) << round;
+        slowestReturn = std::max(slowestReturn, 1e-3 * static_cast<double>(timer.elapsed()));
+    }
+    EXPECT_EQ(strangers, 0U);
+    EXPECT_EQ(first.size(), rig.world().skin.modules.size());
+    std::cout << unplugs() << " unplugs: noticed within " << slowestNotice << " s, back within " << slowestReturn
+              << " s\n";
+}
+
+}  // namespace
+}  // namespace skincal
+
+int main(int argc, char** argv) {
+    testing::InitGoogleTest(&argc, argv);
+    const QCoreApplication application(argc, argv);
+    return RUN_ALL_TESTS();
+}

@@ -46,7 +46,8 @@ int runProgram(int argc, char** argv) {
     line.app.require_subcommand(0, 1);
     WindowOptions window;
     line.app.add_flag_callback(
-        "--demo", [] {}, "Open the window on a simulated arm with skin and a webcam: the only devices so far");
+        "--demo", [] {},
+        "Open the window on a simulated arm with skin and a webcam, beside the webcams that there are");
     line.app.add_flag("--light", window.light, "Light colours");
     line.app.add_option("--open", window.recording, "Open the window with this recording (a *.skinrec directory)");
     line.run = [&] { return runWindow(argc, argv, window); };

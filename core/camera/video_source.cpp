@@ -71,12 +71,13 @@ QString shortReason(const CameraFailure& failure) {
 /// mailbox, and nobody else looks into one of an earlier run.
 struct VideoSource::Run {
     Run(const RunOptions& options, Time now, std::uint64_t first)
-        : watchdog(options.watchdog, now), clock(options.period, options.lead, first) {}
+        : watchdog(options.watchdog, now), clock(options.period, options.lead, first), warmUp(options.warmUp) {}
 
     std::shared_ptr<Mailbox<Letter>> mailbox = std::make_shared<Mailbox<Letter>>();
     QMetaObject::Connection frames;
     FrameWatchdog watchdog;
     CameraClock clock;
+    int warmUp;
 };
 
 VideoSource::VideoSource(QObject* parent) : FrameSource(parent) {
@@ -110,6 +111,10 @@ void VideoSource::deliver() {
         return;
     const qint64 own = letter->frame.startTime();
     const auto stamp = run_->clock.stamp(own >= 0 ? std::optional(Time(own)) : std::nullopt, letter->arrival);
+    if (run_->warmUp > 0) {
+        --run_->warmUp;
+        return;
+    }
     const CameraFrame frame{pictureOf(letter->frame), stamp.time, stamp.sequence};
     if (run_->watchdog.judge(frame, now())) {
         refused_ = run_->watchdog.refused();

@@ -30,6 +30,8 @@ class VideoSource : public FrameSource {
         FrameWatchdogOptions watchdog;
         std::chrono::microseconds period{};  ///< between two frames; 0 where it is not known
         std::chrono::microseconds lead{};    ///< of the exposure, see CameraClock
+        /// Frames that are dated and not passed on: until the shortest delay is known, dates are late.
+        int warmUp = 0;
     };
 
     /// From now on frames of the sink are passed on, those of an earlier run no more.

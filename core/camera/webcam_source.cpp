@@ -136,7 +136,8 @@ void WebcamSource::start() {
             fail(std::move(failure));
         },
         Qt::QueuedConnection);
-    RunOptions run{options_.watchdog, periodOf(format_), periodOf(format_)};
+    constexpr int kWarmUp = 6;  // a fifth of a second, when webcams are dark or too bright anyway
+    RunOptions run{options_.watchdog, periodOf(format_), periodOf(format_), kWarmUp};
     run.watchdog.width = format_.width;
     run.watchdog.height = format_.height;
     // A frame's time lies a period before it came, and slow cameras need more patience.

@@ -29,17 +29,23 @@ class WebcamScan : public testing::Test {
             [this, renderer = std::make_shared<FrameRenderer>(desk.rig.world(), desk.rig.cameraPose(), 0, 200)](
                 std::uint64_t k) {
                 std::vector<LitModule> lit;
+                std::uint64_t light = 0;
                 {
                     const std::scoped_lock lock(mutex);
                     lit = lit_;
+                    light = light_;
                 }
                 const cv::Mat picture = renderer->render(lit, k % 200);
-                return test::bytesOf("i420", picture.cols, picture.rows,
-                                     {picture.begin<std::uint8_t>(), picture.end<std::uint8_t>()});
+                auto bytes = test::bytesOf("i420", picture.cols, picture.rows,
+                                           {picture.begin<std::uint8_t>(), picture.end<std::uint8_t>()});
+                // Drawn for too long: it shows what is over.
+                const std::scoped_lock lock(mutex);
+                return light == light_ ? bytes : std::vector<std::uint8_t>();
             });
         QObject::connect(desk.workbench.skin(), &SkinDevice::lightShown, &desk.scan, [this] {
             const std::scoped_lock lock(mutex);
             lit_ = desk.rig.litAt(desk.rig.now());
+            ++light_;
         });
         webcam->plug();
         const auto listed = [&] {
@@ -65,6 +71,7 @@ class WebcamScan : public testing::Test {
     static std::unique_ptr<QTemporaryDir> folder_;
     std::mutex mutex;
     std::vector<LitModule> lit_;
+    std::uint64_t light_ = 0;  ///< how often it changed
     Desk desk;
     std::shared_ptr<CameraList> list = std::make_shared<CameraList>();
     std::unique_ptr<test::VirtualCamera> webcam;

@@ -130,6 +130,19 @@ TEST(VideoSource, CountsAndDatesByTheFramesOwnTime) {
     EXPECT_LE(source.frames[3].time, source.now());
 }
 
+TEST(VideoSource, KeepsTheFirstToItself) {
+    FedSource source;
+    source.options.warmUp = 3;
+    source.start();
+    for (std::uint64_t k = 1; source.frames.empty() && k < 10; ++k) {
+        source.sink.setVideoFrame(frameOf(64, 48, k));
+        QCoreApplication::processEvents();
+    }
+    ASSERT_EQ(source.frames.size(), 1U);
+    const auto fourth = test::noisyLuma(64, 48, 4);
+    EXPECT_EQ(std::memcmp(source.frames[0].image.data, fourth.data(), fourth.size()), 0);
+}
+
 TEST(VideoSource, PassesNothingOnOnceItIsStopped) {
     FedSource source;
     source.start();

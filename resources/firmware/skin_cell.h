@@ -56,11 +56,14 @@ typedef struct {
     bool inverted;
     uint32_t argument;
     uint32_t colour;
+    uint32_t set;
     uint32_t at; /* synchronised time */
 } skin_pattern;
 
 typedef struct {
     uint64_t word;
+    uint32_t word_set;
+    bool has_word;
     uint16_t mask_number;
     bool has_mask;
     uint8_t mask;

@@ -25,9 +25,12 @@ static uint32_t colour_of(const skin_cell* cell, const skin_pattern* pattern) {
     return pattern->colour ? pattern->colour : 0xFFFFFFu;
 }
 
-/* Frames may overtake each other: a mask may still be on its way, and a pattern may come after a newer one. */
+/* Frames may overtake each other: a mask or a word may still be on its way, and a pattern may come after a newer one.
+ */
 static bool is_ready(const skin_leds* leds, const skin_pattern* pattern) {
-    return pattern->source != skincal_wire_Source_MASK || (leds->has_mask && leds->mask_number == pattern->number);
+    if (pattern->source == skincal_wire_Source_MASK)
+        return leds->has_mask && leds->mask_number == pattern->number;
+    return pattern->source != skincal_wire_Source_WORD || (leds->has_word && leds->word_set == pattern->set);
 }
 
 static bool is_outdated(const skin_leds* leds, const skin_pattern* pattern) {
@@ -56,6 +59,7 @@ static void queue(skin_cell* cell, const skin_header* header, const uint8_t* pay
                                   .inverted = told.inverted,
                                   .argument = told.argument,
                                   .colour = told.colour,
+                                  .set = told.set,
                                   .at = header->time_us ? header->time_us : skin_link_time(&cell->link)};
     leds->queue[leds->queued++] = pattern;
 }
@@ -80,6 +84,8 @@ static void word(skin_cell* cell, const skin_header* header, const uint8_t* payl
     const uint32_t place = ((uint32_t)cell->tree.number - header->first) * told.bytes_each;
     if (place + told.bytes_each > told.words.size)
         return;
+    cell->leds.has_word = true;
+    cell->leds.word_set = told.set;
     cell->leds.word = 0;
     for (uint32_t i = 0; i < told.bytes_each; ++i)
         cell->leds.word |= (uint64_t)told.words.bytes[place + i] << 8 * i;

@@ -42,6 +42,7 @@ static bool explore(skin_cell* cell, int port, uint8_t epoch) {
     cell->tally.open = false;
     cell->leds.has_shown = false; /* another computer may number patterns otherwise */
     cell->leds.has_mask = false;
+    cell->leds.has_word = false; /* it has another number now */
     cell->leds.queued = 0;
     cell->link.silent = 0;
     memset(cell->senses.streams, 0, sizeof cell->senses.streams);

@@ -154,9 +154,9 @@ BodyComparison differenceFromTruth(const BodyModel& body, DeskWithWires& desk) {
 }
 
 TEST(GuidedRun, CalibratesASkinThroughASerialPortAndAWebcam) {
-    DeskWithWires desk("coded");
+    DeskWithWires desk("demo");
     const int code = desk.run({"run", "--device", desk.port(), "--camera", kCameraName, "--intrinsics", desk.lensFile(),
-                               "-o", desk.file("desk.skinrec"), "--poses", "6", "--views", "3", "--on-pose",
+                               "-o", desk.file("desk.skinrec"), "--poses", "6", "--views", "6", "--on-pose",
                                QStringLiteral("echo $SKINCAL_POSE > %1").arg(desk.file("pose")), "--on-view",
                                QStringLiteral("echo $SKINCAL_VIEW > %1; sleep 2").arg(desk.file("view"))});
     EXPECT_EQ(code, 0) << desk.output;
@@ -170,7 +170,7 @@ TEST(GuidedRun, CalibratesASkinThroughASerialPortAndAWebcam) {
 TEST(GuidedRun, OnABadWireItIsTheSame) {
     WireFaults faults;
     faults.byteErrors = 1e-3;
-    DeskWithWires desk("coded", faults);
+    DeskWithWires desk("demo", faults);
     const int code =
         desk.run({"run", "--device", desk.port(), "--views", "0", "-o", desk.file("desk.skinrec"), "--poses", "5",
                   "--on-pose", QStringLiteral("echo $SKINCAL_POSE > %1").arg(desk.file("pose"))});
@@ -184,7 +184,7 @@ TEST(GuidedRun, OnABadWireItIsTheSame) {
 }
 
 TEST(GuidedRun, SaysWhatIsMissing) {
-    DeskWithWires desk("coded");
+    DeskWithWires desk("demo");
     const QStringList common{"run", "-o", desk.file("desk.skinrec"), "--intrinsics", desk.lensFile()};
     EXPECT_EQ(desk.run(common + QStringList{"--device", "/dev/ttyNOSUCH", "--camera", kCameraName}), 2);
     EXPECT_NE(desk.output.find("plugged in"), std::string::npos) << desk.output;

@@ -33,7 +33,7 @@ void letPass(int milliseconds) {
 }
 
 TEST(Unplug, AtAnyMomentIsNoticedAndTheSameModulesComeBack) {
-    SimulatedRig rig(*findScenario("coded"), 3);
+    SimulatedRig rig(*findScenario("arm"), 3);
     WiredSkin wired(rig, {});
     const QTemporaryDir directory;
     const QString link = QDir(directory.path()).filePath(QStringLiteral("skin"));

@@ -57,7 +57,8 @@ void appendMasks(const std::vector<LitCell>& lit, std::size_t cells, std::uint16
 
 }  // namespace
 
-LedWords::LedWords(std::vector<std::vector<LitCell>> sets) : sets_(std::move(sets)) {
+LedWords::LedWords(std::vector<std::vector<LitCell>> sets, std::uint32_t number)
+    : sets_(std::move(sets)), number_(number) {
     if (sets_.size() > 64)
         throw std::logic_error("a word has at most 64 bits");
     for (std::size_t k = 0; k < sets_.size(); ++k)
@@ -85,6 +86,7 @@ std::vector<Message> LedWords::messages(std::size_t cells) const {
         const std::size_t count = std::min(perFrame, cells + 1 - first);
         wire::Words words;
         words.set_bytes_each(static_cast<std::uint32_t>(bytes));
+        words.set_set(number_);
         for (std::size_t i = 0; i < count; ++i)
             for (std::size_t b = 0; b < bytes; ++b)
                 words.mutable_words()->push_back(
@@ -111,6 +113,7 @@ std::vector<Message> patternMessages(const std::vector<LitCell>& lit, std::size_
     } else if (const auto bit = words.find(lit)) {
         pattern.set_source(wire::WORD);
         pattern.set_argument(static_cast<std::uint32_t>(*bit));
+        pattern.set_set(words.number());
     } else {
         pattern.set_source(wire::MASK);
         appendMasks(lit, cells, number, messages);

@@ -29,9 +29,11 @@ struct Message {
 class LedWords {
   public:
     LedWords() = default;
-    /// @param sets  at most 64, else std::logic_error; only white ones have a place in words
-    explicit LedWords(std::vector<std::vector<LitCell>> sets);
+    /// @param sets    at most 64, else std::logic_error; only white ones have a place in words
+    /// @param number  tells these words from earlier ones
+    explicit LedWords(std::vector<std::vector<LitCell>> sets, std::uint32_t number = 1);
 
+    [[nodiscard]] std::uint32_t number() const { return number_; }
     [[nodiscard]] bool empty() const { return sets_.empty(); }
     /// Which set this is.
     [[nodiscard]] std::optional<std::size_t> find(const std::vector<LitCell>& lit) const;
@@ -42,6 +44,7 @@ class LedWords {
   private:
     std::vector<std::vector<LitCell>> sets_;  ///< each by rising number
     std::vector<std::uint64_t> words_;        ///< by number
+    std::uint32_t number_ = 0;
 };
 
 /// Lights these and darkens all others of the cells 1 to `cells`: one broadcast where nobody, everybody, one cell or

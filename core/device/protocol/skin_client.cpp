@@ -44,6 +44,7 @@ std::string hex(std::string_view bytes) {
 SkinClient::SkinClient(SkinListener& listener, const ReliableLinkOptions& link, std::uint32_t seed)
     : listener_(listener),
       link_(link, static_cast<std::uint16_t>(seed)),
+      wordSet_(seed),
       pattern_(static_cast<std::uint16_t>(seed >> 8)),
       query_(static_cast<std::uint16_t>(seed >> 16)),
       run_(seed) {}
@@ -291,7 +292,7 @@ void SkinClient::pollCells(int subject, std::optional<CellPoll>& poll, Time now)
 }
 
 void SkinClient::prepare(std::vector<std::vector<LitCell>> sets) {
-    words_ = LedWords(std::move(sets));
+    words_ = LedWords(std::move(sets), ++wordSet_);
     wordsTold_ = false;
 }
 
@@ -312,7 +313,10 @@ void SkinClient::showAgain(Time now) {
         listener_.onNotShown(given.token, given.most);
         return;
     }
-    // From the second time on, everything anew: masks may have been lost on the way.
+    // From the second time on, everything anew: masks and words may have been lost on the way.
+    if (shown_->tries > 0 && words_.find(shown_->lit))
+        for (Message& message : words_.messages(cells_))
+            send(std::move(message));
     for (Message& message : patternMessages(shown_->lit, cells_, shown_->number, words_))
         send(std::move(message));
     shown_->query = ++query_;

@@ -110,6 +110,7 @@ class SkinClient {
 
     LedWords words_;
     bool wordsTold_ = true;
+    std::uint32_t wordSet_ = 0;
     std::optional<Shown> shown_;
     std::uint16_t pattern_ = 0;
     std::uint16_t query_ = 0;

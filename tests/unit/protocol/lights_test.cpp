@@ -133,8 +133,8 @@ TEST(Lights, ANewerPatternOvertakesAnOlder) {
 }
 
 TEST(Lights, WordsHaveAtMost64Bits) {
-    EXPECT_THROW(LedWords(std::vector<std::vector<LitCell>>(65)), std::logic_error);
-    EXPECT_NO_THROW(LedWords(std::vector<std::vector<LitCell>>(64)));
+    EXPECT_THROW(LedWords(std::vector<std::vector<LitCell>>(65), 1), std::logic_error);
+    EXPECT_NO_THROW(LedWords(std::vector<std::vector<LitCell>>(64), 1));
 }
 
 }  // namespace

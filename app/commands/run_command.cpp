@@ -112,13 +112,9 @@ int runGuided(RunArguments arguments) {
         if (const auto complaint = complaintAboutExisting(arguments.body))
             return badInput(*complaint);
     }
-    std::optional<CameraModel> lens;
-    if (arguments.options.views > 0) {
-        const auto read = readCameraModel(arguments.intrinsics);
-        if (!read)
-            return badInput(read.error().message());
-        lens = *read;
-    }
+    const auto lens = readCameraModel(arguments.intrinsics);
+    if (!lens)
+        return badInput(lens.error().message());
 
     prepareMultimedia();
     if (qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM"))
@@ -137,8 +133,12 @@ int runGuided(RunArguments arguments) {
         if (!camera)
             return badInput(camera.error());
         workbench.cameraOffers.push_back(std::move(*camera));
-        workbench.session().decide({}, [&](Decisions& decisions) { decisions.camera = lens; });
     }
+    workbench.session().decide({}, [&](Decisions& decisions) {
+        decisions.camera = *lens;
+        decisions.cameraOrigin.kind = CameraOrigin::Kind::File;
+        decisions.cameraOrigin.file = std::filesystem::path(arguments.intrinsics).filename().string();
+    });
     arguments.options.directory = QString::fromStdString(arguments.output.string());
     arguments.options.onPose = QString::fromStdString(arguments.onPose);
     arguments.options.onView = QString::fromStdString(arguments.onView);
@@ -171,8 +171,10 @@ void addRunCommand(CommandLine& line) {
         ->required();
     command->add_option("--camera", arguments->camera,
                         "Name or node (/dev/video0) of a webcam, a video file or the address of a stream");
-    command->add_option("--intrinsics", arguments->intrinsics,
-                        "The camera's lens: ROS camera_info, OpenCV or Kalibr, YAML or XML");
+    command
+        ->add_option("--intrinsics", arguments->intrinsics,
+                     "The camera's lens: ROS camera_info, OpenCV or Kalibr, YAML or XML; every recording has one")
+        ->required();
     command->add_option("-o,--output", arguments->output, "The recording, a directory *.skinrec")->required();
     command->add_option("--body", arguments->body, "The body model [the output with .body.json]");
     command->add_option("--template", arguments->templates, "Module templates of your own (JSON)");

@@ -98,6 +98,8 @@ typedef struct {
     uint32_t run;       /* of what was measured */
     uint32_t asked_run; /* that the computer waits for */
     bool streams[4];    /* by subject */
+    bool ordered[4];    /* whether `order` is that of an order */
+    uint16_t order[4];
     uint32_t period_us[4];
     uint32_t next_us[4];
     uint32_t sample_at;

@@ -43,6 +43,10 @@ void skin_senses_receive(skin_cell* cell, const skin_header* header, const uint8
     const unsigned subject = told.subject;
     if ((subject == skincal_wire_Subject_REST && cell->board->acceleration) ||
         (subject == skincal_wire_Subject_TACTILE && cell->board->tactile)) {
+        if (senses->ordered[subject] && (int16_t)((uint16_t)told.order - senses->order[subject]) < 0)
+            return; /* a newer one has overtaken it */
+        senses->ordered[subject] = true;
+        senses->order[subject] = (uint16_t)told.order;
         if (subject == skincal_wire_Subject_REST)
             begin(cell, &senses->streamed);
         senses->streams[subject] = told.period_ms > 0;

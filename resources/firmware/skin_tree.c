@@ -46,6 +46,7 @@ static bool explore(skin_cell* cell, int port, uint8_t epoch) {
     cell->leds.queued = 0;
     cell->link.silent = 0;
     memset(cell->senses.streams, 0, sizeof cell->senses.streams);
+    memset(cell->senses.ordered, 0, sizeof cell->senses.ordered);
     cell->senses.measuring = false;
     answer(cell, port, true);
     if (tree->open != 0)

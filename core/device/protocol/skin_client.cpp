@@ -357,6 +357,7 @@ void SkinClient::streamRest(std::chrono::milliseconds period) {
     wire::Stream stream;
     stream.set_subject(wire::REST);
     stream.set_period_ms(static_cast<std::uint32_t>(period.count()));
+    stream.set_order(++order_);
     if (phase_ == Phase::Explored)
         sendAll(FrameType::Stream, stream.SerializeAsString());
 }
@@ -366,6 +367,7 @@ void SkinClient::streamTouch(std::chrono::milliseconds period, int change_pct) {
     stream.set_subject(wire::TACTILE);
     stream.set_period_ms(static_cast<std::uint32_t>(period.count()));
     stream.set_change_pct(static_cast<std::uint32_t>(change_pct));
+    stream.set_order(++order_);
     if (phase_ == Phase::Explored)
         sendAll(FrameType::Stream, stream.SerializeAsString());
 }

@@ -114,7 +114,8 @@ class SkinClient {
     std::optional<Shown> shown_;
     std::uint16_t pattern_ = 0;
     std::uint16_t query_ = 0;
-    std::uint32_t run_ = 0;  ///< of measurements at rest
+    std::uint32_t run_ = 0;    ///< of measurements at rest
+    std::uint16_t order_ = 0;  ///< of streams
 
     std::optional<CellPoll> rest_;
     std::vector<RestReading> readings_;

@@ -85,6 +85,24 @@ TEST(Senses, StreamsComeFromEveryCellUntilTheyAreStopped) {
     EXPECT_TRUE(line.notes.streamed.empty());
 }
 
+TEST(Senses, OnBadWiresEveryCellStreamsToo) {
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        WireFaults faults;
+        faults.byteErrors = 1e-3;
+        const Skin skin = gridSkin(9, 7);
+        VirtualLine line(skin, skin.hostLinks.front(), faults, seed);
+        ASSERT_TRUE(line.connect());
+        line.notes.restarts = 0;
+        line.client.streamRest(0ms);  // may be overtaken by the next, and then is void
+        line.client.streamRest(100ms);
+        line.runFor(1s);
+        std::map<CellNumber, int> came;
+        for (const RestReading& reading : line.notes.streamed)
+            ++came[reading.cell];
+        EXPECT_EQ(came.size(), 63U) << seed << ", restarts " << line.notes.restarts;
+    }
+}
+
 TEST(Senses, TouchIsSentWhenItChanges) {
     const Skin skin = gridSkin(5, 5);
     VirtualLine line(skin, skin.hostLinks.front(), {}, 14);

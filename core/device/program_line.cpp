@@ -48,8 +48,10 @@ void ProgramLine::close() {
         process->deleteLater();
         return;
     }
+    // Its input ends, which tells it to put things in order; who doesn't hear that is told more plainly.
     process->closeWriteChannel();
-    process->terminate();
+    if (!process->waitForFinished(500))
+        process->terminate();
     if (!process->waitForFinished(1000)) {
         process->kill();
         process->waitForFinished(1000);

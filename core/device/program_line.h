@@ -8,8 +8,8 @@
 namespace skincal {
 
 /// A program that speaks the protocol on its standard input and output: a bridge to a skin that has its own driver.
-/// What it writes to its error output goes to ours, and its last line into the reason where it ends. It is asked to end
-/// when the line is closed, and made to after a second.
+/// What it writes to its error output goes to ours, and its last line into the reason where it ends. When the
+/// line is closed its input ends; half a second later it is asked to end, after another second made to.
 class ProgramLine : public Line {
     Q_OBJECT
   public:

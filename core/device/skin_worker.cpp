@@ -73,7 +73,8 @@ void SkinWorker::open() {
         options.timeout = Time(static_cast<Time::rep>(3e6 * kMaxEncodedFrame / options.bytesPerSecond)) + 20ms;
         SkinListener& listener = *this;
         client_ = std::make_unique<SkinClient>(listener, options, QRandomGenerator::global()->generate());
-        client_->open(now());
+        // A program may have to wait for a driver of its own before it has anything to say.
+        client_->open(now(), address_.kind == LineAddress::Kind::Program ? 15s : 2s);
         pump();
     });
     connect(line_.get(), &Line::received, this, [this](const QByteArray& bytes) {

@@ -8,9 +8,10 @@ using Phase = Connection::Phase;
 using Fault = Connection::Fault;
 using Result = Stepped<Connection, Effect>;
 
-constexpr std::chrono::milliseconds kOpens{3000};
+/// Devices give up sooner, with a reason of their own.
+constexpr std::chrono::milliseconds kOpens{20000};
 /// Between two signs of life of a network that is explored.
-constexpr std::chrono::milliseconds kAnswers{3000};
+constexpr std::chrono::milliseconds kAnswers{15000};
 
 /// Closed in any case: a report may be of an earlier time, and closing what is closed does nothing.
 Result lost(Fault fault, std::size_t found = 0) {

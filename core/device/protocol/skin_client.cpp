@@ -11,7 +11,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr SkinClient::Time kGreeting = 2s;
 constexpr SkinClient::Time kFlood = 10s;
 constexpr SkinClient::Time kPatience = 250ms;
 constexpr SkinClient::Time kTally = 300ms;  // and for each cell:
@@ -81,9 +80,9 @@ void SkinClient::fail(SkinFault fault) {
     listener_.onFault(fault);
 }
 
-void SkinClient::open(Time now) {
+void SkinClient::open(Time now, Time patience) {
     phase_ = Phase::Greeting;
-    due_ = now + kGreeting;
+    due_ = now + patience;
     wire::Hello hello;
     hello.set_oldest_version(FrameHeader::kVersion);
     hello.set_newest_version(FrameHeader::kVersion);
@@ -443,7 +442,7 @@ void SkinClient::poll(Time now, std::vector<std::uint8_t>& bytes) {
         case Phase::Greeting:
             if (now >= due_) {
                 const auto& received = link_.received();
-                fail(received.bytes > 0 && received.frames == 0 ? SkinFault::Garbled : SkinFault::NoAnswer);
+                fail(received.damaged > 0 && received.frames == 0 ? SkinFault::Garbled : SkinFault::NoAnswer);
             }
             break;
         case Phase::Flooding:

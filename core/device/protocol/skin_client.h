@@ -32,8 +32,9 @@ class SkinClient {
     void poll(Time now, std::vector<std::uint8_t>& bytes);
     [[nodiscard]] std::optional<Time> wakeAt() const;
 
-    /// Says hello: onOpened() or onFault() follows, after two seconds at most.
-    void open(Time now);
+    /// Says hello: onOpened() or onFault() follows.
+    /// @param patience  until nobody is there
+    void open(Time now, Time patience = std::chrono::seconds(2));
     /// Gives numbers anew and asks who is there: onCounted(), onCell() again and again, onExplored(); or onFault().
     void explore(Time now);
 

@@ -82,7 +82,7 @@ std::unique_ptr<QTemporaryDir> WebcamScan::folder_;
 TEST_F(WebcamScan, FindsTheSpotsWhereTheyAre) {
     ASSERT_TRUE(desk.connectSkin());
     ASSERT_TRUE(useWebcam());
-    ASSERT_TRUE(desk.scanHere()) << desk.scan.state().why;
+    ASSERT_TRUE(desk.scanHere()) << desk.scan.why().toStdString();
     const World& world = desk.rig.world();
     const auto index = world.skin.indexById();
     Visibility any;
@@ -103,7 +103,7 @@ TEST_F(WebcamScan, IsBrokenOffByAnUnpluggedCameraAndDoneOnceItIsBack) {
     ASSERT_TRUE(waitFor([&] { return desk.scan.state().next >= 3; }));
     webcam->unplug();
     ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == ScanRun::Phase::Failed; }));
-    EXPECT_THAT(desk.scan.state().why, testing::HasSubstr("plug it in again"));
+    EXPECT_THAT(desk.scan.why().toStdString(), testing::HasSubstr("plug it in again"));
     EXPECT_TRUE(desk.session().measured().views.empty());
     webcam->plug();
     // Nobody has to do anything for that.

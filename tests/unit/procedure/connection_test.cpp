@@ -16,7 +16,8 @@ using ConnectionRow = Row<Connection, Event, Effect>;
 
 using Fault = Connection::Fault;
 
-constexpr StartTimer kWait{std::chrono::milliseconds(3000)};
+constexpr StartTimer kOpens{std::chrono::milliseconds(20000)};
+constexpr StartTimer kWait{std::chrono::milliseconds(15000)};
 constexpr std::nullopt_t kNothing = std::nullopt;
 
 Connection stateIn(Connection::Phase phase) {
@@ -34,7 +35,7 @@ Connection stateIn(Connection::Phase phase) {
 
 TEST(Connection, DoesWhatTheTableSays) {
     const ConnectionRow table[] = {
-        {Disconnected, Connect{}, Opening, {OpenDevice{}, kWait}},
+        {Disconnected, Connect{}, Opening, {OpenDevice{}, kOpens}},
         {Disconnected, Disconnect{}, kNothing, {}},
         {Disconnected, Opened{}, kNothing, {}},
         {Disconnected, Closed{}, kNothing, {}},
@@ -70,7 +71,7 @@ TEST(Connection, DoesWhatTheTableSays) {
         {Connected, Explored{}, kNothing, {}},
         {Connected, TimedOut{}, kNothing, {}},
 
-        {Lost, Connect{}, Opening, {OpenDevice{}, kWait}},
+        {Lost, Connect{}, Opening, {OpenDevice{}, kOpens}},
         {Lost, Disconnect{}, Disconnected, {}},
         {Lost, Opened{}, kNothing, {}},
         {Lost, Closed{}, kNothing, {}},

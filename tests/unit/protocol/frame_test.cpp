@@ -147,6 +147,18 @@ TEST(Frame, GarbageIsDroppedInBoundedMemoryAndWhatFollowsIsRead) {
     EXPECT_EQ(decoder.counts().damaged, 1);
 }
 
+TEST(Frame, IsTheExampleOfTheSpecification) {
+    FrameHeader header;
+    header.compatible = FrameHeader::kReliable | FrameHeader::kFirst;
+    header.type = FrameType::Hello;
+    header.sequence = 0x1234;
+    std::vector<std::uint8_t> bytes;
+    appendFrame(header, std::string("\x08\x01\x10\x01\x30\x01", 6), bytes);
+    EXPECT_EQ(bytes, (std::vector<std::uint8_t>{0x02, 0x01, 0x05, 0x03, 0x0A, 0x34, 0x12, 0x01, 0x01, 0x01,
+                                                0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x0B, 0x08, 0x01, 0x10,
+                                                0x01, 0x30, 0x01, 0x1A, 0x29, 0x34, 0xFE, 0x00}));
+}
+
 TEST(Frame, RefusesPayloadsThatAreTooLong) {
     std::vector<std::uint8_t> bytes;
     EXPECT_THROW(appendFrame({}, std::string(kMaxPayload + 1, 'x'), bytes), std::logic_error);

@@ -102,8 +102,10 @@ void FrameDecoder::feed(std::span<const std::uint8_t> bytes, const Sink& sink) {
 }
 
 void FrameDecoder::finish(std::span<const std::uint8_t> stuffed, const Sink& sink) {
-    if (stuffed.empty())
+    if (stuffed.empty()) {
+        ++counts_.empty;
         return;
+    }
     std::array<std::uint8_t, kMaxEncodedFrame> raw;  // NOLINT: written before it is read, and this is the busiest place
     const std::size_t size = stuffed.size() < kMaxEncodedFrame ? unstuff(stuffed, raw.data()) : 0;
     if (size < kFrameHeaderSize + 4 || get<std::uint32_t>(&raw[size - 4]) != checksum({raw.data(), size - 4})) {

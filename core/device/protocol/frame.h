@@ -82,6 +82,7 @@ class FrameDecoder {
     struct Counts {
         std::uint64_t frames = 0;   ///< whole ones
         std::uint64_t damaged = 0;  ///< neither empty nor whole
+        std::uint64_t empty = 0;    ///< zeros that end nothing
         std::uint64_t bytes = 0;
     };
     [[nodiscard]] const Counts& counts() const { return counts_; }

@@ -442,7 +442,8 @@ void SkinClient::poll(Time now, std::vector<std::uint8_t>& bytes) {
         case Phase::Greeting:
             if (now >= due_) {
                 const auto& received = link_.received();
-                fail(received.damaged > 0 && received.frames == 0 ? SkinFault::Garbled : SkinFault::NoAnswer);
+                fail(received.frames == 0 && received.bytes > received.empty ? SkinFault::Garbled
+                                                                             : SkinFault::NoAnswer);
             }
             break;
         case Phase::Flooding:

@@ -203,6 +203,17 @@ TEST(Explore, AnotherDeviceOrSpeedIsSaid) {
     EXPECT_EQ(notes.fault, SkinFault::Garbled);
 }
 
+TEST(Explore, ZerosAreGoodMannersAndNoAnswer) {
+    Notes notes;
+    SkinClient client(notes, {}, 1);
+    client.open(0us);
+    const std::vector<std::uint8_t> zeros(3, 0);
+    client.receive(zeros, 1000us);
+    std::vector<std::uint8_t> bytes;
+    client.poll(3s, bytes);
+    EXPECT_EQ(notes.fault, SkinFault::NoAnswer);
+}
+
 TEST(Explore, AnotherVersionIsSaid) {
     Notes notes;
     SkinClient client(notes, {}, 1);

@@ -129,7 +129,7 @@ static void neighbour(skin_cell* cell, int port, const uint8_t* payload, size_t 
 bool skin_tree_receive(skin_cell* cell, int port, const skin_header* header, const uint8_t* payload, size_t length) {
     if (header->type == TYPE_EXPLORE)
         return explore(cell, port, header->epoch);
-    if (header->epoch != cell->tree.epoch)
+    if (header->epoch != cell->tree.epoch || cell->tree.parent < 0)
         return true;
     switch (header->type) {
         case TYPE_EXPLORED:

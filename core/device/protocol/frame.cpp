@@ -59,7 +59,8 @@ void appendFrame(const FrameHeader& header, std::string_view payload, std::vecto
     put(&raw[8], header.first);
     put(&raw[10], header.count);
     put(&raw[12], header.time_us);
-    std::memcpy(raw.data() + kFrameHeaderSize, payload.data(), payload.size());
+    if (!payload.empty())
+        std::memcpy(raw.data() + kFrameHeaderSize, payload.data(), payload.size());
     const std::size_t checked = kFrameHeaderSize + payload.size();
     put(&raw[checked], checksum({raw.data(), checked}));
 

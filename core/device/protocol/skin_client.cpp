@@ -23,6 +23,12 @@ constexpr int kExplorations = 3;
 constexpr int kTallies = 4;
 constexpr int kContradictions = 4;
 
+/// What cells send wrong is counted and dropped; the library's remarks on it would only fill the error output.
+void silenceProtobuf() {
+    static const auto before = google::protobuf::SetLogHandler(nullptr);
+    static_cast<void>(before);
+}
+
 template <class T>
 std::optional<T> parse(std::string_view payload) {
     T message;
@@ -46,7 +52,9 @@ SkinClient::SkinClient(SkinListener& listener, const ReliableLinkOptions& link, 
       wordSet_(seed),
       pattern_(static_cast<std::uint16_t>(seed >> 8)),
       query_(static_cast<std::uint16_t>(seed >> 16)),
-      run_(seed) {}
+      run_(seed) {
+    silenceProtobuf();
+}
 
 void SkinClient::send(Message message) {
     message.header.epoch = epoch_;

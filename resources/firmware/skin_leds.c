@@ -74,7 +74,7 @@ static void mask(skin_cell* cell, const skin_header* header, const uint8_t* payl
     cell->leds.has_mask = true;
     cell->leds.mask_number = (uint16_t)told.number;
     cell->leds.mask_bits = (uint8_t)told.bits_each;
-    cell->leds.mask = (uint8_t)(told.lit.bytes[at / 8] >> at % 8 & ((1u << told.bits_each) - 1));
+    cell->leds.mask = (uint8_t)((unsigned)told.lit.bytes[at / 8] >> at % 8 & ((1u << told.bits_each) - 1u));
 }
 
 static void word(skin_cell* cell, const skin_header* header, const uint8_t* payload, size_t length) {

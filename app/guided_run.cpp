@@ -83,8 +83,7 @@ GuidedRun::GuidedRun(Workbench& workbench, GuidedRunOptions options)
 }
 
 void GuidedRun::say(const QString& text) const {
-    fmt::print("{}\n", text.toStdString());
-    std::fflush(stdout);
+    fmt::print(stderr, "{}\n", text.toStdString());
 }
 
 void GuidedRun::stop(const QString& why) {

@@ -21,7 +21,7 @@ struct GuidedRunOptions {
 };
 
 /// The guided procedure without a window: connect, poses, views, each written to the recording as soon as it is there.
-/// It drives the presenters that the window's pages show; lines on standard output say what is going on and what a
+/// It drives the presenters that the window's pages show; lines on standard error say what is going on and what a
 /// person has to do, Enter says that it is done.
 ///
 /// Commands run before each pose and view but the first, with SKINCAL_POSE or SKINCAL_VIEW set to its number from 0 on,

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "app/calibrate_to_file.h"
 #include "app/command_line.h"
 #include "app/outcome.h"
 #include "app/quality_table.h"
@@ -40,28 +41,7 @@ int runCalibrate(const CalibrateArguments& arguments) {
     CalibrateOptions options;
     options.method = *methodFromName(arguments.method);
     options.joint.misalignmentSigma = arguments.misalignment_deg * kDegree;
-    tl::expected<BodyModel, CalibrateError> body;
-    {
-        TerminalProgress progress;
-        body = calibrate(*recording, framesOf(arguments.recording, *recording), options, progress.context());
-    }
-    if (!body)
-        return reportFailure(body.error());
-    auto digests = digestRecording(arguments.recording, *recording);
-    if (!digests)
-        return badInput(digests.error().message());
-    body->generator.recording_sha256 = std::move(*digests);
-    if (const auto written = writeBody(*body, output, recording->unknownOfTypes); !written)
-        return badInput(written.error().message());
-
-    if (arguments.json) {
-        auto json = qualityJson(*body);
-        json["output"] = output.string();
-        printJson(json);
-    } else {
-        fmt::print("{}", qualityTable(*body, {{"body model", output.string()}}));
-    }
-    return exitCodeOf(*body);
+    return calibrateToFile(arguments.recording, *recording, options, output, arguments.json);
 }
 
 }  // namespace

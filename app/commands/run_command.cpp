@@ -4,6 +4,7 @@
 #include <QGuiApplication>
 #include <csignal>
 
+#include "app/calibrate_to_file.h"
 #include "app/command_line.h"
 #include "app/guided_run.h"
 #include "app/known_templates.h"
@@ -71,28 +72,8 @@ int calibrateRecording(const RunArguments& arguments) {
     const auto recording = readRecording(arguments.output);
     if (!recording)
         return badInput(recording.error().message());
-    tl::expected<BodyModel, CalibrateError> body;
-    {
-        TerminalProgress progress;
-        body = calibrate(*recording, framesOf(arguments.output, *recording), {}, progress.context());
-    }
-    if (!body)
-        return reportFailure(body.error());
-    auto digests = digestRecording(arguments.output, *recording);
-    if (!digests)
-        return badInput(digests.error().message());
-    body->generator.recording_sha256 = std::move(*digests);
-    if (const auto written = writeBody(*body, arguments.body, recording->unknownOfTypes); !written)
-        return badInput(written.error().message());
-    if (arguments.json) {
-        auto json = qualityJson(*body);
-        json["output"] = arguments.body.string();
-        printJson(json);
-    } else {
-        fmt::print("{}", qualityTable(*body, {{"recording", arguments.output.string()},
-                                              {"body model", arguments.body.string()}}));
-    }
-    return exitCodeOf(*body);
+    return calibrateToFile(arguments.output, *recording, {}, arguments.body, arguments.json,
+                           {{"recording", arguments.output.string()}});
 }
 
 int runGuided(RunArguments arguments) {

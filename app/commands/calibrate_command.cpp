@@ -6,7 +6,6 @@
 #include "app/command_line.h"
 #include "app/outcome.h"
 #include "app/quality_table.h"
-#include "core/formats/body_json.h"
 #include "core/workflow/calibrate.h"
 
 namespace skincal {

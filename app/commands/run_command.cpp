@@ -9,14 +9,10 @@
 #include "app/guided_run.h"
 #include "app/known_templates.h"
 #include "app/outcome.h"
-#include "app/quality_table.h"
 #include "core/camera/media_source.h"
 #include "core/camera/webcam_source.h"
-#include "core/formats/body_json.h"
 #include "core/formats/camera_file.h"
-#include "core/formats/files.h"
 #include "core/formats/recording.h"
-#include "core/workflow/calibrate.h"
 #include "ui/presenters/skin_offer.h"
 
 namespace skincal {

@@ -8,6 +8,7 @@
 #include <QFile>
 #include <QProcess>
 #include <QTemporaryDir>
+#include <iostream>
 #include <mutex>
 
 #include "core/estimation/compare.h"
@@ -16,6 +17,7 @@
 #include "core/rig/pseudo_terminal.h"
 #include "core/rig/wired_skin.h"
 #include "core/simulation/renderer.h"
+#include "core/workflow/simulated_recording.h"
 #include "tests/fixtures/virtual_camera/virtual_camera.h"
 #include "tests/wait_for.h"
 
@@ -31,7 +33,7 @@ constexpr auto kCameraName = "Webcam on the desk";
 class DeskWithWires {
   public:
     explicit DeskWithWires(const char* scenario, const WireFaults& faults = {})
-        : rig_(*findScenario(scenario), 1), skin_(rig_, faults) {
+        : rig_(*findScenario(scenario), 5), skin_(rig_, faults) {
         rig_.setCameraLatency(std::chrono::milliseconds(0));
         const CameraModel& lens = rig_.world().scenario.camera;
         seen_.T_r_v = rig_.cameraPose();
@@ -165,7 +167,23 @@ TEST(GuidedRun, CalibratesASkinThroughASerialPortAndAWebcam) {
     ASSERT_TRUE(body) << desk.output;
     const BodyComparison difference = differenceFromTruth(*body, desk);
     EXPECT_EQ(difference.compared, desk.rig().world().T_r_u.size());
-    EXPECT_LT(difference.positionRms, 1e-3) << desk.output;
+    // As exact as where the same world is recorded without any wire.
+    const World& world = desk.rig().world();
+    const Recording recording = recordingOf(world);
+    const auto simulated = calibrate(recording, framesOf(world, recording), {});
+    ASSERT_TRUE(simulated);
+    std::vector<NamedPose> found;
+    std::vector<NamedPose> real;
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+        ASSERT_TRUE(simulated->modules[u].T_body_module);
+        found.push_back({world.skin.modules[u].id, *simulated->modules[u].T_body_module});
+        real.push_back({world.skin.modules[u].id, world.T_r_u[u]});
+    }
+    const auto reference = compareBodies(found, real);
+    ASSERT_TRUE(reference);
+    std::cout << "position " << 1e3 * difference.positionRms << " mm rms, without wires "
+              << 1e3 * reference->positionRms << " mm\n";
+    EXPECT_LT(difference.positionRms, 1.25 * reference->positionRms) << desk.output;
 }
 
 TEST(GuidedRun, OnABadWireItIsTheSame) {

@@ -14,24 +14,11 @@ constexpr std::size_t kNoiseTable = std::size_t{1} << 16U;
 constexpr std::array<double, 3> kWarmLight{0.88, 1.0, 1.07};  // BGR, of the room in colour pictures
 constexpr double kReferenceDistance = 0.6;                    // m, at which RenderOptions::ledPeak holds
 
-/// Share of a lamp's light that reaches each part of the picture: most of it about the lamp, some of it everywhere.
-cv::Mat lampLight(const CameraModel& camera) {
-    cv::Mat light(camera.height, camera.width, CV_32F);
-    for (int y = 0; y < light.rows; ++y) {
-        for (int x = 0; x < light.cols; ++x) {
-            const double r = std::hypot(x - 0.25 * camera.width, y - 0.2 * camera.height) / (0.3 * camera.width);
-            light.at<float>(y, x) = static_cast<float>(0.3 + 0.7 * std::exp(-0.5 * r * r));
-        }
-    }
-    return light;
-}
-
-double flickerAt(std::size_t frame) {
-    // A lamp at 100 Hz seen at 30 frames per second: beats at 10 Hz.
-    return std::sin(2 * 180 * kDegree * 100.0 * static_cast<double>(frame) / 30.0 + 0.7);
-}
-
 }  // namespace
+
+Matrix3d bumpOf(const Scenario& scenario) {
+    return so3Exp(scenario.disturbances.bump_px / scenario.camera.fx * Vector3d(0.6, -0.8, 0.1));
+}
 
 double ledLobe(double angle, double fullAngle) {
     const double c = std::cos(angle);
@@ -51,6 +38,7 @@ FrameRenderer::FrameRenderer(const World& world, const Isometry3d& T_r_v, std::s
       // The same whether the camera will be knocked or not, so that the first half of such a view is as it was.
       margin_(std::max(32, 4 + static_cast<int>(std::ceil(2 * world.scenario.disturbances.bump_px)))),
       painter_(world, view, margin_),
+      roomLight_(world, view, frames),
       noise_(kNoiseTable),
       index_(world.skin.indexById()) {
     Random random(world.seed, "noise table");
@@ -58,8 +46,6 @@ FrameRenderer::FrameRenderer(const World& world, const Isometry3d& T_r_v, std::s
         n = static_cast<float>(random.normal());
     if (world.scenario.disturbances.person)
         person_ = paintPerson(world.scenario.camera, world.scenario.pictures);
-    if (world.scenario.disturbances.flicker > 0)
-        lamp_ = lampLight(world.scenario.camera);
     moveCamera(T_r_v);
 }
 
@@ -69,9 +55,10 @@ void FrameRenderer::moveCamera(const Isometry3d& T_r_v) {
     T_r_v_ = T_r_v;
     const cv::Mat scene = painter_.paint(T_r_v);
     background_ = scene(cv::Rect(margin_, margin_, camera.width, camera.height)).clone();
+    roomShare_ = painter_.roomShare()(cv::Rect(margin_, margin_, camera.width, camera.height)).clone();
     spots_ = spotsAt(T_r_v);
     if (disturbances.bump_px > 0 && view_ % 2 == 1) {
-        const Matrix3d R_v_b = so3Exp(disturbances.bump_px / camera.fx * Vector3d(0.6, -0.8, 0.1));
+        const Matrix3d R_v_b = bumpOf(world_.scenario);
         bumpedBackground_ = turnScene(scene, camera, R_v_b);
         bumpedSpots_ = spotsAt(makeIsometry(T_r_v.linear() * R_v_b, T_r_v.translation()));
     }
@@ -187,8 +174,7 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
         cv::Mat light = (bumped(frame) ? bumpedBackground_ : background_).clone();
         if (colour)
             light *= kWarmLight.at(static_cast<std::size_t>(channel));
-        if (!lamp_.empty())
-            cv::scaleAdd(lamp_, world_.scenario.disturbances.flicker * flickerAt(frame), light, light);
+        roomLight_.shine(light, roomShare_, frame);
         for (const LitModule& l : lit) {
             const auto found = index_.find(l.module);
             if (found == index_.end() || spots[found->second].peak <= 0)
@@ -217,8 +203,8 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
         // Who stands in front hides LEDs as he hides everything else.
         if (!person_.level.empty())
             passBy(light, frame);
-        if (exposure != 1)
-            light *= exposure;
+        if (const double share = exposure * roomLight_.exposure(frame); share != 1)
+            light *= share;
         channels.push_back(expose(light, frameSeed * 3 + static_cast<std::uint64_t>(channel)));
     }
     if (!colour)

@@ -3,6 +3,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "core/simulation/room_light.h"
 #include "core/simulation/scene.h"
 #include "core/simulation/world.h"
 
@@ -59,11 +60,16 @@ class FrameRenderer {
     std::vector<Spot> spots_;        ///< per module; no peak where it can't be seen
     cv::Mat bumpedBackground_;       ///< after the camera was knocked; empty in views where it is not
     std::vector<Spot> bumpedSpots_;  ///< the same
-    cv::Mat lamp_;                   ///< of a flickering lamp; empty without one
-    Person person_;                  ///< empty without one
-    std::vector<float> noise_;       ///< standard normal numbers, read from random places
+    RoomLight roomLight_;
+    cv::Mat roomShare_;         ///< CV_32F: where the room shows between the body's parts
+    Person person_;             ///< empty without one
+    std::vector<float> noise_;  ///< standard normal numbers, read from random places
     std::unordered_map<ModuleId, std::size_t> index_;
 };
+
+/// How a knock of DisturbanceOptions::bump_px turns the camera about its own centre.
+///   T_r_b = T_r_v * (R_v_b, 0)
+[[nodiscard]] Matrix3d bumpOf(const Scenario& scenario);
 
 /// Light of a point source turned by `angle` from its axis, relative to its front: cos^n with half of it at half the
 /// lobe's full angle.

@@ -75,11 +75,15 @@ struct RenderOptions {
 };
 
 struct DisturbanceOptions {
-    double reflection = 0;  ///< share of an LED's light that a mirror beside the body returns
-    double flicker = 0;     ///< grey levels, lamp at twice the mains frequency
-    bool person = false;    ///< someone walks through the picture
-    bool occluder = false;  ///< something opaque hides part of the picture
-    double bump_px = 0;     ///< the camera is knocked half-way through each second view
+    double reflection = 0;    ///< share of an LED's light that a mirror beside the body returns
+    double flicker = 0;       ///< grey levels, lamp at twice the mains frequency
+    double flickerHz = 100;   ///< twice the mains frequency, seen at 30 frames per second
+    bool person = false;      ///< someone walks through the picture
+    bool occluder = false;    ///< something opaque hides part of the picture
+    double bump_px = 0;       ///< the camera is knocked half-way through each second view
+    double sun = 0;           ///< the room grows brighter by this share through the scan, with a cloud in between
+    double screen = 0;        ///< grey levels between the cells of a picture that changes with every frame, in the room
+    double exposureStep = 0;  ///< share by which the camera's own exposure steps down in the scan, and up again
 };
 
 /// What goes wrong in a way that a calibration has to find and name: how many of each, and by how much. All off by

@@ -371,7 +371,7 @@ cv::Mat ScenePainter::paint(const Isometry3d& T_r_v) {
         // body + scene (1 - covered)
         cv::Mat scene = scene_(box_);
         cv::Mat covered = covered_(box_);
-        cv::subtract(1, covered, covered);
+        cv::subtract(1, covered, covered);  // what roomShare() tells
         cv::multiply(scene, covered, scene);
         cv::add(scene, body_(box_), scene);
     }
@@ -380,6 +380,13 @@ cv::Mat ScenePainter::paint(const Isometry3d& T_r_v) {
     cv::GaussianBlur(scene_, blurred, cv::Size(0, 0), world_.scenario.pictures.blur_px);
     cv::max(blurred, 3.0, blurred);
     return blurred;
+}
+
+cv::Mat ScenePainter::roomShare() const {
+    cv::Mat share(covered_.size(), CV_32F, cv::Scalar(1));
+    if (!box_.empty())
+        covered_(box_).copyTo(share(box_));
+    return share;
 }
 
 cv::Mat turnScene(const cv::Mat& scene, const CameraModel& camera, const Matrix3d& R_v_b) {

@@ -20,6 +20,9 @@ class ScenePainter {
     /// and mirrored where it ends. Of a view that the world has not it stays as it is.
     [[nodiscard]] cv::Mat paint(const Isometry3d& T_r_v);
 
+    /// Of what was painted last: share of each pixel through which the room shows (CV_32F), as large as that.
+    [[nodiscard]] cv::Mat roomShare() const;
+
   private:
     void paintBody(const Isometry3d& T_v_r);
     void placeRoom(const Isometry3d& T_r_v);

@@ -97,8 +97,7 @@ struct Visibility {
 /// Poses at the scan, and pixels from World::T_r_v: in bumped views, as if nobody had knocked.
 [[nodiscard]] Truth truthOf(const World& world);
 
-/// The frames of one view's scan, in order, with the lit sets: see ScanKind. Coded scans begin with all off and all on,
-/// then show bit after bit and its complement of words that differ in at least two bits.
+/// The frames of one view's scan, in order, with the lit sets: see ScanKind; coded scans as codedScan has them.
 [[nodiscard]] std::vector<FrameInfo> planScan(const World& world, std::size_t view);
 
 }  // namespace skincal

@@ -250,7 +250,7 @@ TEST(World, CodedScansGiveEveryModuleAWordOfItsOwn) {
                 int distance = 0;
                 for (std::size_t k = 0; k < frames.size(); ++k)
                     distance += a->second[k] != b->second[k] ? 1 : 0;
-                EXPECT_GE(distance, 4) << "two bits and their complements";
+                EXPECT_GE(distance, 6) << "three bits and their complements";
             }
         }
     }

@@ -32,6 +32,7 @@ void addRenderCommand(CommandLine& line);
 void addSimulateCommand(CommandLine& line);
 void addReproducePaperCommand(CommandLine& line);
 void addAccuracyStudyCommand(CommandLine& line);
+void addScanStudyCommand(CommandLine& line);
 void addDemoCommand(CommandLine& line);
 void addExploreCommand(CommandLine& line);
 void addRunCommand(CommandLine& line);

@@ -64,6 +64,7 @@ int runProgram(int argc, char** argv) {
     addExportCommand(line);
     addReproducePaperCommand(line);
     addAccuracyStudyCommand(line);
+    addScanStudyCommand(line);
     addExploreCommand(line);
     addRunCommand(line);
     addVirtualSkinCommand(line);

@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/study/scan_study.h"
+
+namespace skincal {
+namespace {
+
+std::string percent(std::size_t part, std::size_t whole) {
+    return whole > 0 ? fmt::format("{:.2f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole)) : "–";
+}
+
+std::string line(const std::string& what, const ScanScore& score) {
+    return fmt::format("| {} | {} | {} | {} | {} | {:.3f} | {:.2f} |\n", what, score.visible,
+                       percent(score.found, score.visible), percent(score.choices, score.visible), score.wrong,
+                       score.rms_px(), score.rmsSigmas());
+}
+
+}  // namespace
+
+std::string scanTable(const ScanStudy& study) {
+    std::string text =
+        "| disturbance | strength | modules | distance, m | scan | pictures | visible | found | to choose from | wrong "
+        "| "
+        "rms, px | rms, sigma |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    ScanScore coded;
+    for (const ScanStudyRow& row : study.rows) {
+        const ScanCase& what = row.what;
+        text += line(fmt::format("{} | {} | {} | {} | {} | {}", name(what.disturbance), what.strength, what.modules,
+                                 what.distance, name(what.method), row.score.frames / row.score.views),
+                     row.score);
+        if (what.method == ScanMethod::Coded)
+            coded.add(row.score);
+    }
+    if (coded.views > 0)
+        text += fmt::format("\n{} coded scans: {} modules visible, {} found, {} wrong.\n", coded.views, coded.visible,
+                            percent(coded.found, coded.visible), coded.wrong);
+    return text;
+}
+
+}  // namespace skincal

@@ -234,6 +234,9 @@ World scanWorld(const ScanCase& what, std::uint64_t seed) {
                        (static_cast<double>(k / columns) - 0.5 * static_cast<double>(rows - 1)) * step};
         scenario.patches.push_back(plan);
     }
+    // Who scans from near by turns the exposure down, until few LEDs are clipped.
+    constexpr double kBright = 0.6;
+    scenario.pictures.ledPeak *= std::min(1.0, std::pow(what.distance / kBright, 2));
     scenario.views.count = 0;
     disturb(scenario, what);
     World world = buildWorld(scenario, seed);

@@ -39,24 +39,45 @@ Codebook makeCodebook(const LitWords& words) {
     return book;
 }
 
-Eigen::MatrixXd designMatrix(const Codebook& codebook, std::span<const std::size_t> words) {
+Ambient centred(const Ambient& ambient, std::span<const std::uint8_t> used) {
+    Ambient result = ambient;
+    double sum = 0;
+    double count = 0;
+    for (Eigen::Index k = 0; k < ambient.light.size(); ++k) {
+        if (used[static_cast<std::size_t>(k)] != 0) {
+            sum += ambient.light[k];
+            ++count;
+        }
+    }
+    if (count > 0)
+        result.light.array() -= sum / count;
+    return result;
+}
+
+Eigen::MatrixXd designMatrix(const Codebook& codebook, std::span<const std::size_t> words, const Ambient& ambient) {
     const Eigen::Index drifts = codebook.drift.cols();
-    Eigen::MatrixXd X(codebook.drift.rows(), drifts + static_cast<Eigen::Index>(words.size()));
+    const Eigen::Index first = drifts + (ambient.light.size() > 0 ? 1 : 0);
+    Eigen::MatrixXd X(codebook.drift.rows(), first + static_cast<Eigen::Index>(words.size()));
     X.leftCols(drifts) = codebook.drift;
+    if (first > drifts)
+        X.col(drifts) = ambient.light;
     X.rightCols(static_cast<Eigen::Index>(words.size())).setZero();
     for (std::size_t j = 0; j < words.size(); ++j) {
         for (const std::size_t plane : codebook.lit[words[j]])
-            X(static_cast<Eigen::Index>(plane), drifts + static_cast<Eigen::Index>(j)) = 1;
+            X(static_cast<Eigen::Index>(plane), first + static_cast<Eigen::Index>(j)) = 1;
     }
     return X;
 }
 
-std::optional<Eigen::MatrixXd> inverseNormalMatrix(const Eigen::MatrixXd& X, std::span<const std::uint8_t> used) {
+std::optional<Eigen::MatrixXd> inverseNormalMatrix(const Eigen::MatrixXd& X, std::span<const std::uint8_t> used,
+                                                   const Codebook& codebook, const Ambient& ambient) {
     Eigen::MatrixXd N = Eigen::MatrixXd::Zero(X.cols(), X.cols());
     for (Eigen::Index k = 0; k < X.rows(); ++k) {
         if (used[static_cast<std::size_t>(k)] != 0)
             N.selfadjointView<Eigen::Lower>().rankUpdate(X.row(k).transpose());
     }
+    if (ambient.light.size() > 0)
+        N(codebook.drift.cols(), codebook.drift.cols()) += ambient.ridge;
     const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor(N);
     // The drift columns are normalised, so small numbers here mean dependence, not scale.
     if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() < 1e-3)
@@ -65,9 +86,9 @@ std::optional<Eigen::MatrixXd> inverseNormalMatrix(const Eigen::MatrixXd& X, std
 }
 
 Eigen::MatrixXd amplitudeWeights(const Codebook& codebook, std::span<const std::size_t> words,
-                                 std::span<const std::uint8_t> used) {
-    const Eigen::MatrixXd X = designMatrix(codebook, words);
-    const auto inverse = inverseNormalMatrix(X, used);
+                                 std::span<const std::uint8_t> used, const Ambient& ambient) {
+    const Eigen::MatrixXd X = designMatrix(codebook, words, centred(ambient, used));
+    const auto inverse = inverseNormalMatrix(X, used, codebook, ambient);
     if (!inverse)
         return {};
     Eigen::MatrixXd weights = inverse->bottomRows(static_cast<Eigen::Index>(words.size())) * X.transpose();
@@ -79,8 +100,8 @@ Eigen::MatrixXd amplitudeWeights(const Codebook& codebook, std::span<const std::
 }
 
 Eigen::MatrixXd explainedSpace(const Codebook& codebook, std::span<const std::size_t> words,
-                               std::span<const std::uint8_t> used) {
-    Eigen::MatrixXd X = designMatrix(codebook, words);
+                               std::span<const std::uint8_t> used, const Ambient& ambient) {
+    Eigen::MatrixXd X = designMatrix(codebook, words, centred(ambient, used));
     for (Eigen::Index k = 0; k < X.rows(); ++k) {
         if (used[static_cast<std::size_t>(k)] == 0)
             X.row(k).setZero();

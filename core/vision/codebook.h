@@ -25,21 +25,37 @@ struct Codebook {
 };
 [[nodiscard]] Codebook makeCodebook(const LitWords& words);
 
-/// Columns of the linear model y = X p of a series: the drift's, then one per word with ones where it is lit.
-[[nodiscard]] Eigen::MatrixXd designMatrix(const Codebook& codebook, std::span<const std::size_t> words);
+/// What the surroundings of a spot do from plane to plane. A spot on patterned ground follows them: sun, lamps and
+/// neighbours' light change it by a share of what they change around it.
+struct Ambient {
+    Eigen::VectorXd light{};  ///< per plane, grey levels; empty where it is not known
+    double ridge = 0;         ///< (noise of a value / what that share is believed to be at most)^2, grey levels squared
+};
 
-/// Inverse of X^T X over the planes in `used`. Nothing where they can't tell the columns apart.
+/// Off its mean over the planes in `used`: of what hides a spot the surroundings tell, and must not stand for the
+/// intercept.
+[[nodiscard]] Ambient centred(const Ambient& ambient, std::span<const std::uint8_t> used);
+
+/// Columns of the linear model y = X p of a series: the drift's, the ambient's where it is known, then one per word
+/// with ones where it is lit.
+[[nodiscard]] Eigen::MatrixXd designMatrix(const Codebook& codebook, std::span<const std::size_t> words,
+                                           const Ambient& ambient = {});
+
+/// Inverse of X^T X over the planes in `used`, the ambient's ridge added to its diagonal. Nothing where they can't tell
+/// the columns apart.
 [[nodiscard]] std::optional<Eigen::MatrixXd> inverseNormalMatrix(const Eigen::MatrixXd& X,
-                                                                 std::span<const std::uint8_t> used);
+                                                                 std::span<const std::uint8_t> used,
+                                                                 const Codebook& codebook, const Ambient& ambient = {});
 
-/// Weights that turn pixel values over the planes into the amplitude of each word in `words` (least squares on drift
-/// and words over the planes in `used`): one row per word, one column per plane. Empty when they can't be separated.
+/// Weights that turn pixel values over the planes into the amplitude of each word in `words` (least squares on drift,
+/// ambient and words over the planes in `used`): one row per word, one column per plane. Empty when they can't be
+/// separated.
 [[nodiscard]] Eigen::MatrixXd amplitudeWeights(const Codebook& codebook, std::span<const std::size_t> words,
-                                               std::span<const std::uint8_t> used);
+                                               std::span<const std::uint8_t> used, const Ambient& ambient = {});
 
-/// Orthonormal basis of what drift and `words` can explain over the planes in `used`: planes x unknowns, zero rows for
-/// planes not used. What it leaves of a pixel's values is light that follows none of them.
+/// Orthonormal basis of what drift, ambient and `words` can explain over the planes in `used`: planes x unknowns, zero
+/// rows for planes not used. What it leaves of a pixel's values is light that follows none of them.
 [[nodiscard]] Eigen::MatrixXd explainedSpace(const Codebook& codebook, std::span<const std::size_t> words,
-                                             std::span<const std::uint8_t> used);
+                                             std::span<const std::uint8_t> used, const Ambient& ambient = {});
 
 }  // namespace skincal

@@ -23,6 +23,7 @@ struct DecoderOptions {
     double maxStrayShare = 0.02;   ///< of a clipped spot's light that may follow another word
     double sameSpot_px = 2;        ///< two finds of one module nearer than this are one
     double reflectionRatio = 2.5;  ///< flux ratio from which the weaker of two spots is a reflection
+    double maxMotion_px = 1;       ///< of the camera within the scan; beyond it nothing is found
     int maxSpots = 4;              ///< of one module that are handed on; where there are more, none is
     int candidatesPerModule = 8;   ///< limits the candidates to this times the modules …
     int extraCandidates = 500;     ///< … plus this
@@ -32,15 +33,18 @@ struct DecoderOptions {
 
 /// Finds every module's LED in a view from frames with any lit sets: one at a time between backgrounds, patterns with
 /// or without complements, repeats, colours. Three passes over the frames: where does anything blink (SpotFinder); what
-/// does it blink (a series per candidate, matchSeries); what does its light look like (per pixel the least-squares
-/// amplitude of the module's word, fitSpot). Memory grows with candidates times frames, never pictures times frames.
+/// does it blink (a series per candidate, WordMatcher); what does its light look like (per pixel the least-squares
+/// amplitude of the module's word, neighbours' light taken off, fitSpot). Memory grows with candidates times frames,
+/// never pictures times frames.
 ///
 /// Every module is either in `found` or in `undetected` with the reason:
-///   NotFound   never or always lit; no spot blinks its word; its spot has not the shape of an LED
+///   NotFound   never or always lit; no spot blinks its word; its spot has not the shape of an LED; the camera moved by
+///              more than `maxMotion_px` in the scan
 ///   Ambiguous  another module has the same word; another word fits its spot as well; two spots of similar strength
 ///              blink its word (a reflection less than `reflectionRatio` weaker): these are handed on as
 ///              Undetected::spots, at most `maxSpots` of them; where there are more, none is
-/// A spot shared by two LEDs is separated where both centres can be fitted, else neither is reported.
+/// A spot shared by two LEDs is separated where both centres can be fitted, else neither is reported. Where the camera
+/// moved a little, half of that is added to every standard deviation: when it moved is not known.
 /// @param modules  all modules of the skin; a frame that lights any other is an error
 /// @param frames   in the order in which they were taken
 /// @param load     called for each frame up to three times

@@ -36,11 +36,21 @@ struct Undetected {
     std::vector<SpotChoice> spots{};
 };
 
+/// What made a spot the LED of a module: the word that it was sent, against what was seen.
+struct WordReading {
+    std::string sent;      ///< per picture (colours: per channel of it), '1' lit, '0' not
+    std::string received;  ///< the same from its brightness; '.' where something disturbed it
+    double snr = 0;        ///< its light in one picture over the noise of that
+    double margin = 0;     ///< lead over whatever else it could be, in -2 log likelihood
+};
+
 /// Everything the picture of one view yields.
 struct ViewDetections {
     std::string name;
     std::vector<LedDetection> found;
     std::vector<Undetected> undetected;
+    std::vector<WordReading> readings{};  ///< one per `found`, where they were decoded from pictures
+    std::optional<double> moved_px{};     ///< by which the camera moved in the scan, or more; empty: LEDs can't tell
 };
 
 }  // namespace skincal

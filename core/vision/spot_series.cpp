@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <opencv2/core/utility.hpp>
 #include <stdexcept>
 
 #include "core/geometry/statistics.h"
@@ -14,15 +15,36 @@ namespace {
 constexpr int kCore = 2;
 // exp(-r^2 / 2 s^2) with s = 1.2 at r = 0, 1, 2.
 constexpr std::array<double, 3> kTap{1.0, 0.70665, 0.24935};
+constexpr int kLargestRadius = 30;
 
-// Median of the window's edge: what lamps and exposure do to it in this frame. Neighbouring spots hardly count.
-double edgeLevel(const FramePixels& frame, const SpotCandidate& spot, int radius, int channel) {
-    const cv::Size size = frame.size();
-    std::vector<double> edge;
-    edge.reserve(8 * static_cast<std::size_t>(radius));
+/// @param pixel  grey level of a place times some whole number, as an int
+template <class Pixel>
+SpotBrightness brightness(cv::Size size, const SpotCandidate& spot, int radius, double scale, const Pixel& pixel) {
+    double sum = 0;
+    double weights = 0;
+    int peak = 0;
+    SpotBrightness result;
+    for (int dy = -kCore; dy <= kCore; ++dy) {
+        const int y = spot.y + dy;
+        if (y < 0 || y >= size.height)
+            continue;
+        for (int dx = -kCore; dx <= kCore; ++dx) {
+            const int x = spot.x + dx;
+            if (x < 0 || x >= size.width)
+                continue;
+            const double weight =
+                kTap[static_cast<std::size_t>(std::abs(dx))] * kTap[static_cast<std::size_t>(std::abs(dy))];
+            const int here = pixel(x, y);
+            sum += weight * here;
+            weights += weight;
+            peak = std::max(peak, here);
+        }
+    }
+    std::array<int, std::size_t{8} * kLargestRadius> edge{};
+    std::size_t count = 0;
     const auto visit = [&](int x, int y) {
         if (x >= 0 && y >= 0 && x < size.width && y < size.height)
-            edge.push_back(frame.value(x, y, channel));
+            edge[count++] = pixel(x, y);
     };
     for (int i = -radius; i < radius; ++i) {
         visit(spot.x + i, spot.y - radius);
@@ -30,132 +52,120 @@ double edgeLevel(const FramePixels& frame, const SpotCandidate& spot, int radius
         visit(spot.x - i, spot.y + radius);
         visit(spot.x - radius, spot.y - i);
     }
-    if (edge.empty())
-        return 0;
-    return median(std::move(edge));
-}
-
-Eigen::RowVectorXd weightsOf(const Codebook& codebook, std::span<const std::size_t> words, std::size_t index,
-                             std::span<const std::uint8_t> used) {
-    const Eigen::MatrixXd weights = amplitudeWeights(codebook, words, used);
-    if (static_cast<Eigen::Index>(index) >= weights.rows())
-        throw std::logic_error("AmplitudeMap: words that can't be separated");
-    return weights.row(static_cast<Eigen::Index>(index));
+    if (count > 0) {
+        const std::size_t half = (count + 1) / 2;
+        std::nth_element(edge.begin(), edge.begin() + static_cast<std::ptrdiff_t>(half - 1),
+                         edge.begin() + static_cast<std::ptrdiff_t>(count));
+        int darker = 0;
+        for (std::size_t i = 0; i < half; ++i)
+            darker += edge[i];
+        result.around = scale * darker / static_cast<double>(half);
+    }
+    result.level = scale * sum / weights;
+    result.peak = scale * peak;
+    result.value = result.level - result.around;
+    return result;
 }
 
 }  // namespace
 
 SpotBrightness spotBrightness(const FramePixels& frame, const SpotCandidate& spot, int radius, int channel) {
-    const cv::Size size = frame.size();
-    double sum = 0;
-    double weights = 0;
-    for (int dy = -kCore; dy <= kCore; ++dy) {
-        for (int dx = -kCore; dx <= kCore; ++dx) {
-            const int x = spot.x + dx;
-            const int y = spot.y + dy;
-            if (x < 0 || y < 0 || x >= size.width || y >= size.height)
-                continue;
-            const double weight =
-                kTap[static_cast<std::size_t>(std::abs(dx))] * kTap[static_cast<std::size_t>(std::abs(dy))];
-            sum += weight * frame.value(x, y, channel);
-            weights += weight;
-        }
+    if (radius > kLargestRadius)
+        throw std::logic_error("spotBrightness: the window is too large");
+    const cv::Mat& picture = frame.picture();
+    SpotBrightness result;
+    if (picture.channels() == 1) {
+        result = brightness(picture.size(), spot, radius, 1, [&](int x, int y) { return int{picture.ptr(y)[x]}; });
+    } else if (channel >= 0) {
+        result = brightness(picture.size(), spot, radius, 1,
+                            [&](int x, int y) { return int{picture.ptr(y)[3 * x + channel]}; });
+    } else {
+        result = brightness(picture.size(), spot, radius, 1.0 / 3, [&](int x, int y) {
+            const std::uint8_t* pixel = picture.ptr(y) + static_cast<std::ptrdiff_t>(3) * x;
+            return int{pixel[0]} + pixel[1] + pixel[2];
+        });
     }
-    const double level = sum / weights;
-    return {level - edgeLevel(frame, spot, radius, channel), level};
+    return result;
 }
 
 double spotBrightnessSigma(const ImageNoise& noise, double level, int radius) {
     const double sum = kTap[0] + 2 * (kTap[1] + kTap[2]);
     const double squares = kTap[0] * kTap[0] + 2 * (kTap[1] * kTap[1] + kTap[2] * kTap[2]);
     const double core = std::pow(squares / (sum * sum), 2);
-    // A median is less sharp than a mean by pi / 2.
+    // The mean of a darker half is less sharp than that of all by about pi / 2, as a median is.
     const double edge = std::numbers::pi / 2 / (8 * radius);
     return std::sqrt(noise.variance(level) * (core + edge));
 }
 
-AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size picture, const Codebook& codebook,
-                           std::span<const std::size_t> words, std::size_t index, std::span<const std::uint8_t> used)
-    : spot_(spot),
-      radius_(radius),
-      weights_(weightsOf(codebook, words, index, used)),
-      space_(explainedSpace(codebook, words, used)),
-      lit_(codebook.planes(), 0),
-      used_(used.begin(), used.end()),
-      alone_(words.size() == 1) {
-    const cv::Rect rect = cv::Rect(spot.x - radius, spot.y - radius, 2 * radius + 1, 2 * radius + 1) &
-                          cv::Rect(0, 0, picture.width, picture.height);
-    const Eigen::ArrayXXd zero = Eigen::ArrayXXd::Zero(rect.height, rect.width);
-    window_ = {rect.x, rect.y, zero, zero, {}};
-    window_.state.setConstant(rect.height, rect.width, PixelState::Good);
-    moments_.assign(static_cast<std::size_t>(space_.cols()), zero);
-    squares_ = zero;
-    noise_ = zero;
-    for (const std::size_t plane : codebook.lit[words[index]])
-        lit_[plane] = 1;
+SpotSeries::SpotSeries(std::size_t planes, std::size_t spots)
+    : light(static_cast<Eigen::Index>(planes), static_cast<Eigen::Index>(spots)),
+      around(light.rows(), light.cols()),
+      level(Eigen::VectorXd::Zero(light.cols())),
+      peak(level) {}
+
+void SpotSeries::read(const FramePixels& frame, std::span<const SpotCandidate> spots, int radius, std::size_t plane,
+                      int channel) {
+    const auto row = static_cast<Eigen::Index>(plane);
+    cv::parallel_for_(cv::Range(0, static_cast<int>(spots.size())), [&](const cv::Range& range) {
+        for (int i = range.start; i < range.end; ++i) {
+            const SpotBrightness read = spotBrightness(frame, spots[static_cast<std::size_t>(i)], radius, channel);
+            light(row, i) = static_cast<float>(read.value);
+            around(row, i) = static_cast<float>(read.around);
+            level[i] = std::max(level[i], read.level);
+            peak[i] = std::max(peak[i], read.peak);
+        }
+    });
 }
 
-void AmplitudeMap::add(const FramePixels& frame, std::size_t plane, int channel, const ImageNoise& noise) {
-    if (used_[plane] == 0)
-        return;
-    const auto at = static_cast<Eigen::Index>(plane);
-    const double weight = weights_[at];
-    const double edge = edgeLevel(frame, spot_, radius_, channel);
-    for (Eigen::Index row = 0; row < window_.value.rows(); ++row) {
-        for (Eigen::Index col = 0; col < window_.value.cols(); ++col) {
-            const int x = window_.x0 + static_cast<int>(col);
-            const int y = window_.y0 + static_cast<int>(row);
-            const double value = frame.value(x, y, channel);
-            const double variance = noise.variance(value);
-            const double light = value - edge;
-            window_.value(row, col) += weight * light;
-            window_.variance(row, col) += weight * weight * variance;
-            squares_(row, col) += light * light;
-            noise_(row, col) += variance;
-            for (std::size_t j = 0; j < moments_.size(); ++j)
-                moments_[j](row, col) += space_(at, static_cast<Eigen::Index>(j)) * light;
-            if (!frame.saturated(x, y, channel))
-                continue;
-            PixelState& state = window_.state(row, col);
-            state = alone_ && lit_[plane] != 0 && state != PixelState::Excluded ? PixelState::Saturated
-                                                                                : PixelState::Excluded;
+std::vector<double> exposureGains(const SpotSeries& series, std::span<const double> sigma,
+                                  std::span<const std::size_t> litCount) {
+    constexpr double kStrong = 3;
+    constexpr std::size_t kFewest = 3;
+    constexpr double kLeastStep = 0.05;
+    const Eigen::Index planes = series.light.rows();
+    std::vector<double> gains(static_cast<std::size_t>(planes), 1);
+    std::vector<Eigen::Index> spots;
+    std::vector<double> strongest;
+    std::vector<float> values(static_cast<std::size_t>(planes));
+    for (Eigen::Index i = 0; i < series.light.cols(); ++i) {
+        // But for the top tenth, which a flash may have.
+        Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(i);
+        const auto high = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
+        std::nth_element(values.begin(), high, values.end());
+        if (static_cast<double>(*high) > kStrong * sigma[static_cast<std::size_t>(i)]) {
+            spots.push_back(i);
+            strongest.push_back(static_cast<double>(*high));
         }
     }
-}
-
-double AmplitudeMap::distance(Eigen::Index row, Eigen::Index col, const Vector2d& centre) const {
-    return std::hypot(static_cast<double>(window_.x0 + col) - centre.x(),
-                      static_cast<double>(window_.y0 + row) - centre.y());
-}
-
-double AmplitudeMap::strayShare(const Vector2d& centre, double radius_px) const {
-    const auto planes = static_cast<double>(std::count(used_.begin(), used_.end(), 1));
-    const double freedom = std::max(0.0, planes - static_cast<double>(space_.cols()));
-    // |w|^2 off the drift is the inverse of the amplitude's variance for unit noise.
-    const double energy = 1 / weights_.squaredNorm();
-    double light = 0;
-    double stray = 0;
-    for (Eigen::Index row = 0; row < window_.state.rows(); ++row) {
-        for (Eigen::Index col = 0; col < window_.state.cols(); ++col) {
-            if (window_.state(row, col) != PixelState::Good || distance(row, col, centre) > radius_px)
-                continue;
-            light += energy * window_.value(row, col) * window_.value(row, col);
-            stray += squares_(row, col) - noise_(row, col) * freedom / planes;
-            for (const Eigen::ArrayXXd& moment : moments_)
-                stray -= moment(row, col) * moment(row, col);
-        }
+    std::vector<std::size_t> told;
+    std::vector<double> shares(spots.size());
+    for (std::size_t k = 0; k < gains.size(); ++k) {
+        if (litCount[k] < kFewest || spots.size() < kFewest)
+            continue;
+        for (std::size_t i = 0; i < spots.size(); ++i)
+            shares[i] = static_cast<double>(series.light(static_cast<Eigen::Index>(k), spots[i])) / strongest[i];
+        std::sort(shares.begin(), shares.end());
+        const double top = shares[9 * (shares.size() - 1) / 10];
+        const auto shining =
+            std::partition_point(shares.begin(), shares.end(), [&](double s) { return s < 0.5 * top; });
+        const auto count = static_cast<std::size_t>(shares.end() - shining);
+        if (top <= 0 || count < kFewest)
+            continue;
+        gains[k] = *(shining + static_cast<std::ptrdiff_t>(count / 2));
+        told.push_back(k);
     }
-    return light > 0 ? stray / light : 0.0;
-}
-
-bool AmplitudeMap::blindNear(const Vector2d& centre, double radius_px) const {
-    for (Eigen::Index row = 0; row < window_.state.rows(); ++row) {
-        for (Eigen::Index col = 0; col < window_.state.cols(); ++col) {
-            if (window_.state(row, col) == PixelState::Excluded && distance(row, col, centre) <= radius_px)
-                return true;
-        }
+    std::vector<double> all;
+    for (const std::size_t k : told)
+        all.push_back(gains[k]);
+    if (all.empty())
+        return gains;
+    const double usual = median(std::move(all));
+    for (const std::size_t k : told) {
+        gains[k] /= usual;
+        if (std::abs(gains[k] - 1) < kLeastStep)
+            gains[k] = 1;
     }
-    return false;
+    return gains;
 }
 
 }  // namespace skincal

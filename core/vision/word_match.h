@@ -6,19 +6,24 @@
 #include <vector>
 
 #include "core/vision/codebook.h"
+#include "core/vision/word_ranking.h"
 
 namespace skincal {
 
 struct WordMatchOptions {
-    double outlier = 5;              ///< a plane that is off by more standard deviations than this counts as disturbed
-    double maxDisturbed = 0.2;       ///< share of the planes that may be disturbed
-    double minSignificance = 6;      ///< amplitude over its standard deviation
-    double minMargin = 20;           ///< lead over any other explanation, in -2 log likelihood
-    double maxReducedCost = 4;       ///< misfit of the undisturbed planes over the noise
-    double brightnessSpread = 0.05;  ///< how evenly one LED shines from plane to plane, relative
-    double colourSpread = 0.1;       ///< the same between colours, where LEDs are lit in colours
-    int shortlist = 8;               ///< words examined robustly per series
-    int maxIterations = 50;          ///< of fitting and dropping disturbed planes; what has not settled then is no fit
+    double outlier = 5;               ///< a plane that is off by more standard deviations than this counts as disturbed
+    double hiddenCost = 2.5;          ///< the same where the plane before is disturbed, too: what hides an LED stays
+    double maxHidden = 0.5;           ///< share of the planes that may be disturbed in a single run …
+    double maxDisturbed = 0.2;        ///< … and where there are several runs
+    double minSignificance = 6;       ///< amplitude over its standard deviation
+    double minMargin = 20;            ///< lead over any other explanation, in -2 log likelihood
+    double maxReducedCost = 4;        ///< misfit of the undisturbed planes over the noise
+    double minExplained = 0.8;        ///< share of the light's blinking there that a word must explain …
+    double minExplainedByTwo = 0.95;  ///< … and that two must, of which there are so many more
+    double brightnessSpread = 0.05;   ///< how evenly one LED shines from plane to plane, relative
+    double colourSpread = 0.1;        ///< the same between colours, where LEDs are lit in colours
+    int shortlist = 8;                ///< words examined robustly per series
+    int maxIterations = 50;           ///< of fitting and dropping disturbed planes; what has not settled then is no fit
 
     [[nodiscard]] bool validate() const;
 };
@@ -34,24 +39,37 @@ struct SeriesMatch {
     SeriesVerdict verdict = SeriesVerdict::Dark;
     std::vector<std::size_t> words;  ///< module positions, brightest first, at most 2
     std::vector<double> amplitudes;  ///< grey levels, same order
+    double ambient = 0;              ///< share of what the surroundings do
     std::vector<std::uint8_t> used;  ///< per plane, 0 where it was disturbed
     double margin = 0;               ///< lead over the runner-up, -2 log likelihood
     std::optional<std::size_t> runnerUp{};
 };
 
 /// Whose LED is it? Maximum likelihood over modules u (and, where no single word will do, pairs) of
-///   y_k = intercept + slope t_k + sum_u c_u w_u[k] + noise,   c_u > 0,
-/// each plane's misfit capped at `outlier` standard deviations, so that a passing hand or a flash costs a plane and not
-/// the decision. The capped likelihoods of the best and the second-best explanation (no light at all included) must
-/// differ by `minMargin`. One-at-a-time words have a single lit plane and hence no redundancy: there a flash exactly
-/// in that frame looks like the LED; the shape of the spot has to decide.
+///   y_k = intercept + slope t_k + rho a_k + sum_u c_u w_u[k] + noise,   c_u > 0, rho ~ N(0, ambient prior)
+/// but for disturbed planes, of which nothing is believed: the first of a run costs `outlier`^2, each one more
+/// `hiddenCost`^2 (the cheapest division into runs, by dynamic programming), so that a flash costs a plane, and who
+/// walks past a run of them, but not the decision. The likelihoods of the best and the second-best explanation (no
+/// light at all included) must differ by `minMargin`. One-at-a-time words have a single lit plane and hence no
+/// redundancy: there a flash exactly in that frame looks like the LED; the shape of the spot has to decide.
 /// The words of a Matched series can be separated over its `used` planes (amplitudeWeights is not empty) and its
 /// amplitudes are the least-squares ones there: an explanation whose planes keep coming and going counts as a rival,
 /// but never as the answer.
-/// @param series  one value per plane of the codebook, grey levels
-/// @param sigma   standard deviation of a value from camera noise alone, > 0
-/// Throws std::logic_error on a size mismatch or bad options.
-[[nodiscard]] SeriesMatch matchSeries(const Codebook& codebook, std::span<const double> series, double sigma,
-                                      const WordMatchOptions& options = {});
+class WordMatcher {
+  public:
+    /// The codebook must outlive it. Throws std::logic_error on bad options.
+    explicit WordMatcher(const Codebook& codebook, const WordMatchOptions& options = {});
+
+    /// @param series   one value per plane of the codebook, grey levels
+    /// @param sigma    standard deviation of a value from camera noise alone, > 0
+    /// @param ambient  of the spot, where it is known
+    /// Throws std::logic_error on a size mismatch.
+    [[nodiscard]] SeriesMatch match(std::span<const double> series, double sigma, const Ambient& ambient = {}) const;
+
+  private:
+    const Codebook& codebook_;
+    WordMatchOptions options_;
+    WordRanking ranking_;
+};
 
 }  // namespace skincal

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/vision/amplitude_map.h"
 #include "core/vision/codebook.h"
 #include "core/vision/frame_pixels.h"
 #include "core/vision/spot_series.h"
@@ -50,7 +51,7 @@ TEST_P(WordMatch, NamesTheModule) {
         const Scan scan = makeScan(seed, 30, GetParam());
         for (std::size_t u = 0; u < 30; ++u) {
             const double amplitude = random.uniform(15, 150);
-            const SeriesMatch match = matchSeries(scan.book, series(scan, {{u, amplitude}}, random), 1);
+            const SeriesMatch match = WordMatcher(scan.book).match(series(scan, {{u, amplitude}}, random), 1);
             ASSERT_EQ(match.verdict, SeriesVerdict::Matched);
             ASSERT_EQ(match.words, std::vector{u});
             EXPECT_NEAR(match.amplitudes[0], amplitude, 6);
@@ -63,7 +64,7 @@ TEST_P(WordMatch, NoiseNamesNobody) {
     Random random(2, "noise");
     const Scan scan = makeScan(2, 60, GetParam());
     for (int i = 0; i < 500; ++i)
-        EXPECT_NE(matchSeries(scan.book, series(scan, {}, random), 1).verdict, SeriesVerdict::Matched);
+        EXPECT_NE(WordMatcher(scan.book).match(series(scan, {}, random), 1).verdict, SeriesVerdict::Matched);
 }
 
 TEST_P(WordMatch, DisturbedPlanesMakeNoWrongName) {
@@ -75,7 +76,7 @@ TEST_P(WordMatch, DisturbedPlanesMakeNoWrongName) {
         const std::size_t u = random.index(20);
         auto y = series(scan, {{u, random.uniform(40, 120)}}, random);
         y[random.index(y.size())] += random.uniform(-150, 150);
-        const SeriesMatch match = matchSeries(scan.book, y, 1);
+        const SeriesMatch match = WordMatcher(scan.book).match(y, 1);
         if (match.verdict != SeriesVerdict::Matched)
             continue;
         EXPECT_EQ(match.words, std::vector{u});
@@ -94,7 +95,7 @@ TEST_P(WordMatch, SumsAreTakenApartOrRefused) {
         const std::size_t u = random.index(20);
         const std::size_t v = (u + 1 + random.index(19)) % 20;
         const auto y = series(scan, {{u, random.uniform(30, 100)}, {v, random.uniform(30, 100)}}, random);
-        const SeriesMatch match = matchSeries(scan.book, y, 1);
+        const SeriesMatch match = WordMatcher(scan.book).match(y, 1);
         if (match.verdict != SeriesVerdict::Matched)
             continue;
         for (const std::size_t word : match.words)
@@ -126,7 +127,7 @@ TEST(WordMatching, NeighboursInTheCodeAreAmbiguousWhenFaint) {
     std::vector<double> y(12);
     for (std::size_t k = 0; k < 12; ++k)
         y[k] = k % 2 == 1 ? 4.0 : 0.0;
-    const SeriesMatch match = matchSeries(book, y, 1);
+    const SeriesMatch match = WordMatcher(book).match(y, 1);
     EXPECT_EQ(match.verdict, SeriesVerdict::Ambiguous);
     ASSERT_TRUE(match.runnerUp.has_value());
     EXPECT_EQ(match.words[0] + *match.runnerUp, 1U) << "each is the other's rival";
@@ -140,7 +141,7 @@ TEST(WordMatching, BlinkingLikeNobodyIsUnlike) {
         std::vector<double> y(scan.frames.size());
         for (double& value : y)
             value = 100 * random.uniform();
-        const SeriesMatch match = matchSeries(scan.book, y, 1);
+        const SeriesMatch match = WordMatcher(scan.book).match(y, 1);
         EXPECT_NE(match.verdict, SeriesVerdict::Matched);
         unlike += match.verdict == SeriesVerdict::Unlike ? 1 : 0;
     }
@@ -215,7 +216,7 @@ TEST(WordMatching, WhatMatchesIsTheLeastSquaresFitToThePlanesItKeeps) {
     int matched = 0;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
         const BentSeries bent(seed);
-        const SeriesMatch match = matchSeries(bent.book, bent.y, 1);
+        const SeriesMatch match = WordMatcher(bent.book).match(bent.y, 1);
         if (match.verdict != SeriesVerdict::Matched)
             continue;
         ++matched;
@@ -235,34 +236,39 @@ TEST(WordMatching, AFitThatHasNotSettledIsNone) {
     int refused = 0;
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
         const BentSeries bent(seed);
-        const SeriesMatch match = matchSeries(bent.book, bent.y, 1);
+        const SeriesMatch match = WordMatcher(bent.book).match(bent.y, 1);
         const bool dropped = std::find(match.used.begin(), match.used.end(), 0) != match.used.end();
         if (match.verdict != SeriesVerdict::Matched || !dropped)
             continue;
-        EXPECT_NE(matchSeries(bent.book, bent.y, 1, hasty).verdict, SeriesVerdict::Matched) << "seed " << seed;
+        EXPECT_NE(WordMatcher(bent.book, hasty).match(bent.y, 1).verdict, SeriesVerdict::Matched) << "seed " << seed;
         ++refused;
     }
     EXPECT_GE(refused, 50);
 }
 
-TEST(SpotSeries, WordsThatCannotBeSeparatedThrow) {
-    const Scan scan = makeScan(7, 8, false);
-    const std::vector<std::uint8_t> used(scan.frames.size(), 1);
-    const std::vector<std::size_t> words{2, 2};
-    EXPECT_THROW(AmplitudeMap({20, 20, 50}, 5, {40, 40}, scan.book, words, 0, used), std::logic_error);
+TEST(AmplitudeMap, AWordThatNeverBlinksThrows) {
+    const std::vector<ModuleId> ids{ModuleId(1), ModuleId(2)};
+    const std::vector<FrameInfo> frames{{"", {{ids[0]}, {ids[1]}}}, {"", {{ids[0]}}}};
+    const Codebook book = makeCodebook(*litWords(ids, frames));
+    LightFilter filter;
+    filter.words = {0};
+    filter.used = {1, 1};
+    EXPECT_THROW(AmplitudeMap({20, 20, 50}, 5, {40, 40}, book, filter), std::logic_error);
+    filter.words = {1, 0};
+    EXPECT_NO_THROW(AmplitudeMap({20, 20, 50}, 5, {40, 40}, book, filter)) << "does without its neighbour";
 }
 
 TEST(WordMatching, MisuseThrows) {
     const Scan scan = makeScan(8, 8, false);
     const std::vector<double> y(scan.frames.size(), 0.0);
-    EXPECT_THROW((void)matchSeries(scan.book, std::vector<double>(3, 0.0), 1), std::logic_error);
-    EXPECT_THROW((void)matchSeries(scan.book, y, 0), std::logic_error);
+    EXPECT_THROW((void)WordMatcher(scan.book).match(std::vector<double>(3, 0.0), 1), std::logic_error);
+    EXPECT_THROW((void)WordMatcher(scan.book).match(y, 0), std::logic_error);
     WordMatchOptions options;
     options.shortlist = 1;
-    EXPECT_THROW((void)matchSeries(scan.book, y, 1, options), std::logic_error);
+    EXPECT_THROW((void)WordMatcher(scan.book, options).match(y, 1), std::logic_error);
     options = {};
     options.maxIterations = 0;
-    EXPECT_THROW((void)matchSeries(scan.book, y, 1, options), std::logic_error);
+    EXPECT_THROW((void)WordMatcher(scan.book, options).match(y, 1), std::logic_error);
 }
 
 TEST(LitWords, DefectsAreNamed) {

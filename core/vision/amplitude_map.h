@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <opencv2/core/types.hpp>
+#include <span>
+#include <vector>
+
+#include "core/vision/codebook.h"
+#include "core/vision/frame_pixels.h"
+#include "core/vision/image_noise.h"
+#include "core/vision/spot_candidates.h"
+#include "core/vision/spot_fit.h"
+
+namespace skincal {
+
+/// How to take one module's light out of the planes of a spot.
+struct LightFilter {
+    /// In the codebook, the wanted one first; the rest are those of other LEDs that throw light into the window. As
+    /// many of these count, from the first on, as can be told apart.
+    std::vector<std::size_t> words;
+    std::vector<std::uint8_t> used;   ///< per plane, 0 where it was disturbed
+    Eigen::VectorXf around;           ///< per plane, level of the surroundings (SpotBrightness::around)
+    std::span<const double> gains{};  ///< per plane, of the exposure
+    double sigma = 1;                 ///< of a pixel, about
+    bool shared = false;              ///< the second word is another LED's in the same spot
+    bool clipped = false;             ///< whether strayShare() will be asked for: it costs as much as all the rest
+};
+
+/// What the surroundings of a spot do, at the exposure that is usual; nothing where `around` is empty.
+/// @param around  per plane, SpotBrightness::around
+/// @param sigma   of the values that may follow them
+[[nodiscard]] Ambient ambientOf(const Eigen::VectorXf& around, std::span<const double> gains, double sigma);
+
+/// Collects, pixel by pixel in a window, the amplitude of one module's word, its variance, and what light there is that
+/// the words do not explain; each frame less the level of the surroundings and over its exposure.
+class AmplitudeMap {
+  public:
+    /// Throws std::logic_error where the first word can't be told from drift and surroundings over the used planes;
+    /// those of a Matched series can.
+    /// A clipped pixel bounds the light from below where it is clipped in every plane in which the module shines and in
+    /// no other, and no other LED is in the spot; else nothing is known of it.
+    AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size picture, const Codebook& codebook, LightFilter filter);
+
+    void add(const FramePixels& frame, std::size_t plane, int channel, const ImageNoise& noise);
+    /// After the last plane.
+    [[nodiscard]] SpotWindow window() const;
+    /// Energy of unexplained light over that of the word, noise taken off, in the pixels within `radius_px` of `centre`
+    /// that are not clipped; zero where it was not asked for.
+    [[nodiscard]] double strayShare(const Vector2d& centre, double radius_px) const;
+
+  private:
+    [[nodiscard]] double distance(Eigen::Index row, Eigen::Index col, const Vector2d& centre) const;
+
+    using Image = Eigen::ArrayXXf;
+
+    cv::Rect rect_;
+    LightFilter filter_;
+    Eigen::VectorXf weights_;
+    Eigen::MatrixXf space_;  ///< planes x unknowns, orthonormal: what the words and the surroundings explain
+    std::vector<std::uint8_t> lit_;
+    Image value_;
+    Image variance_;
+    Image clippedLit_;            ///< in how many planes with the module lit …
+    Image clippedDark_;           ///< … and not
+    std::vector<Image> moments_;  ///< per column of space_
+    Image squares_;
+    Image noise_;
+};
+
+}  // namespace skincal

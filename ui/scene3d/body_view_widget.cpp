@@ -22,7 +22,6 @@ BodyViewWidget::BodyViewWidget(QWidget* parent)
       actors_(std::make_unique<BodyActors>(scene_->renderer())) {
     setFocusPolicy(Qt::StrongFocus);
     scene_->setFocusPolicy(Qt::NoFocus);
-    connect(scene_, &SceneWidget::aboutToDraw, overlay_, &SceneOverlay::follow);
     connect(scene_, &SceneWidget::cameraMovedByUser, this, [this] { movedByUser_ = true; });
     connect(scene_, &SceneWidget::clicked, this, &BodyViewWidget::click);
     connect(scene_, &SceneWidget::doubleClicked, this, &BodyViewWidget::fitView);
@@ -208,12 +207,9 @@ void BodyViewWidget::setMeasuring(bool measuring) {
 }
 
 QImage BodyViewWidget::grabPicture() {
-    overlay_->follow();
-    const QImage scene = scene_->grabFramebuffer();
-    if (scene.isNull())
+    QImage picture = scene_->grabPicture();
+    if (picture.isNull())
         return {};
-    QImage picture = scene.convertToFormat(QImage::Format_RGB32);
-    picture.setDevicePixelRatio(devicePixelRatioF());
     QPainter painter(&picture);
     overlay_->render(&painter, QPoint(), QRegion(), QWidget::DrawChildren);
     return picture;

@@ -120,6 +120,8 @@ class BodyViewWidget : public QWidget {
     void changeEvent(QEvent* event) override;
 
   private:
+    /// Shaders are compiled where a thing is first drawn: here, before there is a window to wait for, all of them.
+    void warmUp();
     void click(const QPointF& position);
     void measureTo(ModuleId module);
     void findValues();

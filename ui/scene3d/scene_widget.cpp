@@ -17,7 +17,6 @@ namespace skincal {
 namespace {
 
 constexpr int kFrame_ms = 33;
-constexpr int kRest_ms = 250;
 constexpr double kClickRadius_px = 4;
 constexpr double kRadian_deg = 57.29577951308232;
 
@@ -37,11 +36,6 @@ SceneWidget::SceneWidget(QWidget* parent)
 
     drawTimer_.setSingleShot(true);
     connect(&drawTimer_, &QTimer::timeout, this, &SceneWidget::drawNow);
-    restTimer_.setSingleShot(true);
-    connect(&restTimer_, &QTimer::timeout, this, [this] {
-        if (isRough_)
-            requestDraw();
-    });
 }
 
 SceneWidget::~SceneWidget() {
@@ -57,11 +51,6 @@ void SceneWidget::requestDraw() {
     drawTimer_.start(static_cast<int>(std::clamp<qint64>(kFrame_ms - since, 0, kFrame_ms)));
 }
 
-void SceneWidget::animate() {
-    restTimer_.start(kRest_ms);
-    requestDraw();
-}
-
 QSize SceneWidget::sizeInPixels() const {
     return (QSizeF(size()) * devicePixelRatioF()).toSize();
 }
@@ -71,10 +60,15 @@ void SceneWidget::drawNow() {
     if (!isVisible())
         return;
     sinceFrame_.start();
-    isRough_ = canvas_.isSoftware() && restTimer_.isActive();
-    canvas_.draw(sizeInPixels(), devicePixelRatioF(), !isRough_);
+    canvas_.draw(sizeInPixels(), devicePixelRatioF(), !canvas_.isSoftware());
     ++framesDrawn_;
     update();
+}
+
+void SceneWidget::warmUp() {
+    constexpr QSize kSmall(16, 16);
+    renderer().ResetCamera();
+    canvas_.draw(kSmall, 1, !canvas_.isSoftware());
 }
 
 QImage SceneWidget::grabPicture() {
@@ -93,16 +87,11 @@ void SceneWidget::paintEvent(QPaintEvent* /*event*/) {
 void SceneWidget::resizeEvent(QResizeEvent* /*event*/) {
     const QSize size = sizeInPixels();
     interactor_->UpdateSize(size.width(), size.height());
-    animate();
+    requestDraw();
 }
 
 void SceneWidget::showEvent(QShowEvent* /*event*/) {
-    animate();
-}
-
-void SceneWidget::moved() {
-    restTimer_.start(kRest_ms);
-    emit cameraMovedByUser();
+    requestDraw();
 }
 
 void SceneWidget::orbit(double right, double up) {
@@ -110,13 +99,13 @@ void SceneWidget::orbit(double right, double up) {
     camera->Azimuth(-right * kRadian_deg);
     camera->Elevation(-up * kRadian_deg);
     camera->OrthogonalizeViewUp();
-    moved();
+    emit cameraMovedByUser();
     requestDraw();
 }
 
 void SceneWidget::zoom(double factor) {
     renderer().GetActiveCamera()->Dolly(factor);
-    moved();
+    emit cameraMovedByUser();
     requestDraw();
 }
 
@@ -145,7 +134,7 @@ void SceneWidget::mouseMoveEvent(QMouseEvent* event) {
     if (event->buttons() == Qt::NoButton || (!dragging_ && std::hypot(way.x(), way.y()) < kClickRadius_px))
         return;
     dragging_ = true;
-    moved();
+    emit cameraMovedByUser();
     tellPosition(event->position(), event->modifiers());
     interactor_->InvokeEvent(vtkCommand::MouseMoveEvent);
 }

@@ -15,8 +15,8 @@ namespace skincal {
 
 /// A VTK renderer inside a Qt window: left drag turns, shift or middle drag shifts, right drag and the wheel zoom.
 /// Draws on the GUI thread, at most 30 times a second, only while it is shown, and only after requestDraw() or a camera
-/// movement. Where the processor draws, edges are smoothed only while nothing moves. Needs a platform with OpenGL (xcb,
-/// not offscreen). May be moved to another window, and destroyed at any time.
+/// movement. Where the processor draws, edges are smoothed in pictures only, since that takes it several times as long.
+/// Needs a platform with OpenGL (xcb, not offscreen). May be moved to another window, and destroyed at any time.
 class SceneWidget : public QWidget {
     Q_OBJECT
   public:
@@ -31,8 +31,8 @@ class SceneWidget : public QWidget {
     /// Without waiting for the frame's turn.
     void drawNow();
 
-    /// The same for one of many changes in a row, which matter more than smooth edges where drawing is slow.
-    void animate();
+    /// Draws what there is in a small picture that nobody sees.
+    void warmUp();
 
     /// Turns the camera about what it looks at, rad: to the right and upwards.
     void orbit(double right, double up);
@@ -64,17 +64,14 @@ class SceneWidget : public QWidget {
 
   private:
     void tellPosition(const QPointF& position, Qt::KeyboardModifiers modifiers);
-    void moved();
     [[nodiscard]] QSize sizeInPixels() const;
 
     SceneCanvas canvas_;
     vtkSmartPointer<vtkGenericRenderWindowInteractor> interactor_;
     QTimer drawTimer_;
-    QTimer restTimer_;  ///< runs while something moves
     QElapsedTimer sinceFrame_;
     QPointF pressedAt_;
     bool dragging_ = false;
-    bool isRough_ = false;  ///< the last frame, which a smooth one follows at rest
     int framesDrawn_ = 0;
 };
 

@@ -1,8 +1,11 @@
 #include "tests/ui/window/driven_window.h"
 
+#include <gtest/gtest.h>
+
 #include <QDir>
 #include <QElapsedTimer>
 
+#include "tests/ui/watchful_application.h"
 #include "ui/scene3d/body_view_widget.h"
 
 namespace skincal {
@@ -20,8 +23,17 @@ Workbench& withRig(Workbench& workbench, SimulatedRig& rig) {
 
 DrivenWindow::DrivenWindow(const std::string& scenario)
     : rig(*findScenario(scenario), 1), window(withRig(workbench, rig)) {
+    WatchfulApplication::instance().forget();
     window.show();
     (void)QTest::qWaitForWindowExposed(&window);
+}
+
+DrivenWindow::~DrivenWindow() {
+    // A test takes its pictures where it is, which may be within an event.
+    if (qEnvironmentVariableIsSet("SKINCAL_SCREENSHOTS"))
+        return;
+    const WatchfulApplication::Stall& stall = WatchfulApplication::instance().longest();
+    EXPECT_LT(stall.seconds, WatchfulApplication::kLongest) << stall.what;
 }
 
 bool DrivenWindow::waitFor(const std::function<bool()>& isSo) {

@@ -8,7 +8,6 @@
 #include "app/command_line.h"
 #include "core/rig/simulated_rig.h"
 #include "core/session/session_keeper.h"
-#include "ui/scene3d/scene_widget.h"
 #include "ui/texts/plural_forms.h"
 #include "ui/window/camera_offers.h"
 #include "ui/window/file_actions.h"
@@ -24,7 +23,6 @@ int runWindow(int argc, char** argv, const WindowOptions& options) {
     // The 3D view needs X, which Wayland's desktops offer, too.
     if (qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM"))
         qputenv("QT_QPA_PLATFORM", "xcb");
-    QSurfaceFormat::setDefaultFormat(SceneWidget::sceneFormat());
     QApplication application(argc, argv);
     installPluralForms(application);
     QApplication::setApplicationName(QStringLiteral("SkinCal"));

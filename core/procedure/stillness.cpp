@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <stdexcept>
 
@@ -102,22 +103,25 @@ std::vector<GravityReading> StillnessMeter::meansSince(std::chrono::microseconds
 }
 
 double angleToNearestPose(std::span<const GravityReading> captured, std::span<const GravityReading> now) {
-    std::map<ModuleId, Vector3d> current;
-    for (const GravityReading& reading : now)
-        current[reading.module] = reading.acceleration;
-    std::map<int, std::vector<double>> angles;
+    std::vector<std::pair<ModuleId, Vector3d>> current;
+    for (const GravityReading& reading : now) {
+        if (reading.acceleration.norm() > 0)
+            current.emplace_back(reading.module, reading.acceleration.normalized());
+    }
+    const auto byId = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::stable_sort(current.begin(), current.end(), byId);
+    std::map<int, std::vector<double>> cosines;
     for (const GravityReading& reading : captured) {
-        const auto found = current.find(reading.module);
-        if (found == current.end() || reading.acceleration.norm() == 0 || found->second.norm() == 0)
-            continue;
-        const double cosine = reading.acceleration.normalized().dot(found->second.normalized());
-        angles[reading.pose].push_back(std::acos(std::clamp(cosine, -1.0, 1.0)));
+        const auto found =
+            std::lower_bound(current.begin(), current.end(), std::pair{reading.module, Vector3d()}, byId);
+        if (found != current.end() && found->first == reading.module && reading.acceleration.norm() > 0)
+            cosines[reading.pose].push_back(reading.acceleration.normalized().dot(found->second));
     }
     double nearest = 180 * kDegree;
-    for (auto& [pose, of] : angles) {
+    for (auto& [pose, of] : cosines) {
         const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
-        std::nth_element(of.begin(), middle, of.end());
-        nearest = std::min(nearest, *middle);
+        std::nth_element(of.begin(), middle, of.end(), std::greater<>());
+        nearest = std::min(nearest, std::acos(std::clamp(*middle, -1.0, 1.0)));
     }
     return nearest;
 }

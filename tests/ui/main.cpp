@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
-#include <QSurfaceFormat>
+#include <QFont>
 #include <cstdlib>
 #include <iostream>
 
 #include "app/headless_display.h"
 #include "tests/ui/watchful_application.h"
-#include "ui/scene3d/scene_widget.h"
 #include "ui/texts/plural_forms.h"
 
 int main(int argc, char** argv) {
@@ -23,7 +22,6 @@ int main(int argc, char** argv) {
     }
     ::setenv("QT_QPA_PLATFORM", "xcb", 1);
     ::setenv("QT_SCALE_FACTOR", "1", 1);
-    QSurfaceFormat::setDefaultFormat(skincal::SceneWidget::sceneFormat());
     QApplication::setStyle("fusion");
     skincal::WatchfulApplication application(argc, argv);
     skincal::installPluralForms(application);

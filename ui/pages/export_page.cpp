@@ -86,7 +86,15 @@ std::size_t ExportPage::format() const {
     return static_cast<std::size_t>(std::max(0, formats_->currentRow()));
 }
 
+void ExportPage::setActive(bool active) {
+    isActive_ = active;
+    refresh();
+}
+
 void ExportPage::refresh() {
+    // A preview writes the whole file, which takes its time with 1,000 modules: only where it is seen.
+    if (!isActive_)
+        return;
     description_->setText(presenter_.formats()[format()].description);
     const QString preview = presenter_.preview(format(), kPreviewLines);
     preview_->setPlainText(preview.isEmpty() ? tr("There is no placed module to export yet.") : preview);

@@ -15,6 +15,8 @@ class ExportPage : public Page {
   public:
     explicit ExportPage(ExportPresenter& presenter, QWidget* parent = nullptr);
 
+    void setActive(bool active) override;
+
   signals:
     void failed(const QString& why);
 
@@ -31,6 +33,7 @@ class ExportPage : public Page {
     QLineEdit* file_;
     QPushButton* write_;
     QLabel* outcome_;
+    bool isActive_ = false;
 };
 
 }  // namespace skincal

@@ -1,5 +1,6 @@
 #include "ui/presenters/link_model.h"
 
+#include <QTimer>
 #include <algorithm>
 #include <set>
 
@@ -49,9 +50,21 @@ std::vector<JudgedLink> judgedLinks(Session& session) {
 
 LinkModel::LinkModel(Workbench& workbench, QObject* parent) : QAbstractTableModel(parent), workbench_(workbench) {
     const Session& session = workbench.session();
-    connect(&session, &Session::skinChanged, this, &LinkModel::refresh);
-    connect(&session, &Session::solutionChanged, this, &LinkModel::refresh);
-    connect(&session, &Session::decisionsChanged, this, &LinkModel::refresh);
+    // Judging 1,000 modules' links by pictures that nothing was solved from yet takes tens of milliseconds, as where a
+    // recording is opened: in an event of its own, and once, whatever changes together.
+    auto* later = new QTimer(this);
+    later->setSingleShot(true);
+    connect(later, &QTimer::timeout, this, &LinkModel::refresh);
+    const auto refreshInTime = [this, later] {
+        Session& changed = workbench_.session();
+        if (changed.solution() || changed.measured().views.empty())
+            refresh();
+        else
+            later->start(0);
+    };
+    connect(&session, &Session::skinChanged, this, refreshInTime);
+    connect(&session, &Session::solutionChanged, this, refreshInTime);
+    connect(&session, &Session::decisionsChanged, this, refreshInTime);
     refresh();
 }
 

@@ -23,7 +23,13 @@ std::optional<Vector3d> inPatch(const BodyModule& module, const Vector3d& raw) {
 PoseModel::PoseModel(Workbench& workbench, QObject* parent) : QAbstractTableModel(parent), workbench_(workbench) {
     const Session& session = workbench.session();
     connect(&session, &Session::posesChanged, this, &PoseModel::refresh);
-    connect(&session, &Session::decisionsChanged, this, &PoseModel::refresh);
+    // Of all decisions only which poses are dropped shows here.
+    connect(&session, &Session::decisionsChanged, this, [this] {
+        const std::set<int>& dropped = workbench_.session().decisions().droppedPoses;
+        const auto isNews = [&](const Row& row) { return row.isDropped != dropped.contains(row.pose); };
+        if (std::any_of(rows_.begin(), rows_.end(), isNews))
+            refresh();
+    });
     connect(&session, &Session::solutionChanged, this, &PoseModel::refresh);
     refresh();
 }

@@ -30,7 +30,7 @@ QString sentenceOf(StepReason reason) {
         case StepReason::NoSkin:
             return StepModel::tr("connect a skin first");
         case StepReason::SkinLost:
-            return StepModel::tr("the skin is gone");
+            return StepModel::tr("the skin can't be reached");
         case StepReason::NoNeighbours:
             return StepModel::tr("no two modules are neighbours");
         case StepReason::NoPoses:

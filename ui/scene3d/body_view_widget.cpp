@@ -10,7 +10,9 @@
 #include <array>
 #include <stdexcept>
 
+#include "core/skin/module_template.h"
 #include "ui/scene3d/body_actors.h"
+#include "ui/scene3d/body_scene.h"
 #include "ui/scene3d/scene_widget.h"
 
 namespace skincal {
@@ -22,12 +24,33 @@ BodyViewWidget::BodyViewWidget(QWidget* parent)
       actors_(std::make_unique<BodyActors>(scene_->renderer())) {
     setFocusPolicy(Qt::StrongFocus);
     scene_->setFocusPolicy(Qt::NoFocus);
-    connect(scene_, &SceneWidget::aboutToDraw, overlay_, &SceneOverlay::follow);
     connect(scene_, &SceneWidget::cameraMovedByUser, this, [this] { movedByUser_ = true; });
     connect(scene_, &SceneWidget::clicked, this, &BodyViewWidget::click);
     connect(scene_, &SceneWidget::doubleClicked, this, &BodyViewWidget::fitView);
     actors_->setDark(dark_);
+    warmUp();
     updateWords();
+}
+
+void BodyViewWidget::warmUp() {
+    BodyModel cell;
+    cell.templates = {paperHexagon()};
+    BodyModule& module = cell.modules.emplace_back();
+    module.type = cell.templates.front().name;
+    module.T_body_module = Isometry3d::Identity();
+    module.covariance = 1e-6 * Matrix6d::Identity();
+    cell.views.emplace_back().T_body_camera = Isometry3d::Identity();
+    const SceneLayout layout = layOut(cell);
+    actors_->show(cell, layout);
+    actors_->setCamerasShown(true);
+    actors_->setEllipsoids(cell, 1);
+    actors_->setSelected(layout, std::vector{module.id});
+    actors_->setGuideCamera(Isometry3d::Identity(), layout.radius);
+    actors_->setGuideUp(Vector3d::UnitZ(), layout);
+    actors_->setMesh(boardsOf(cell));
+    scene_->warmUp();
+    actors_->setMesh(nullptr);
+    actors_->clear();
 }
 
 BodyViewWidget::~BodyViewWidget() {
@@ -176,10 +199,8 @@ void BodyViewWidget::setDark(bool dark) {
 
 void BodyViewWidget::setCellValues(std::span<const float> values) {
     live_.assign(values.begin(), values.end());
-    if (mode_ == ColourMode::Values) {
+    if (mode_ == ColourMode::Values)
         recolour();
-        scene_->animate();
-    }
 }
 
 void BodyViewWidget::setCellHeights(std::span<const float> heights) {
@@ -188,7 +209,7 @@ void BodyViewWidget::setCellHeights(std::span<const float> heights) {
     for (const ShownModule& module : layout_.modules)
         shown.push_back(module.index < heights.size() ? heights[module.index] : 0.0F);
     actors_->setHeights(shown);
-    scene_->animate();
+    scene_->requestDraw();
 }
 
 void BodyViewWidget::setValueWords(const QString& title, const QString& low, const QString& high) {
@@ -208,12 +229,9 @@ void BodyViewWidget::setMeasuring(bool measuring) {
 }
 
 QImage BodyViewWidget::grabPicture() {
-    overlay_->follow();
-    const QImage scene = scene_->grabFramebuffer();
-    if (scene.isNull())
+    QImage picture = scene_->grabPicture();
+    if (picture.isNull())
         return {};
-    QImage picture = scene.convertToFormat(QImage::Format_RGB32);
-    picture.setDevicePixelRatio(devicePixelRatioF());
     QPainter painter(&picture);
     overlay_->render(&painter, QPoint(), QRegion(), QWidget::DrawChildren);
     return picture;

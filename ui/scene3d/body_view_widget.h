@@ -22,8 +22,7 @@ class SceneOverlay;
 class SceneWidget;
 
 /// The body as it grows: a live 3D view of snapshots of a body model, in the body frame. Everything is on the GUI
-/// thread; snapshots are shared, never changed. Needs SceneWidget::sceneFormat() as default surface format, set before
-/// the application is made.
+/// thread; snapshots are shared, never changed.
 ///
 /// Patches without a pose in the body lie side by side, and a caption says so. The user's camera is kept from snapshot
 /// to snapshot; as long as the user has not moved it, it follows the body, and it starts anew where the scene was empty
@@ -121,6 +120,8 @@ class BodyViewWidget : public QWidget {
     void changeEvent(QEvent* event) override;
 
   private:
+    /// Shaders are compiled where a thing is first drawn: here, before there is a window to wait for, all of them.
+    void warmUp();
     void click(const QPointF& position);
     void measureTo(ModuleId module);
     void findValues();

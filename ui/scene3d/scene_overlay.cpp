@@ -41,18 +41,6 @@ void SceneOverlay::setContent(OverlayContent content) {
     update();
 }
 
-void SceneOverlay::follow() {
-    // A whole picture of words is slow to bring to the screen: only what moves.
-    if (!content_.labels.empty() || !content_.measure.empty()) {
-        update();
-        return;
-    }
-    if (content_.axes)
-        update(0, height() - 110, 110, 110);
-    if (content_.scale)
-        update(width() / 2, height() - 60, width() - width() / 2, 60);
-}
-
 QColor SceneOverlay::ink() const {
     return content_.dark ? QColor(234, 236, 240) : QColor(33, 36, 43);
 }

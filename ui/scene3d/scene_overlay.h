@@ -49,7 +49,8 @@ struct OverlayContent {
     bool focus = false;  ///< a frame that shows where keys go
 };
 
-/// Words, legend, axes and scale bar above a scene, in Qt's fonts and the user's language. Lets the mouse through.
+/// Words, legend, axes and scale bar above a scene, in Qt's fonts and the user's language. Lets the mouse through. Is
+/// painted anew with every frame of the scene, and follows its camera so.
 class SceneOverlay : public QWidget {
     Q_OBJECT
   public:
@@ -58,9 +59,6 @@ class SceneOverlay : public QWidget {
 
     void setContent(OverlayContent content);
     [[nodiscard]] const OverlayContent& content() const { return content_; }
-
-    /// The camera has moved: paints anew what follows it.
-    void follow();
 
     /// The size of the legend's box, in the upper left corner; none where it has nothing to say.
     [[nodiscard]] QSizeF legendSize() const;

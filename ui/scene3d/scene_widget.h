@@ -3,51 +3,49 @@
 #include <vtkSmartPointer.h>
 
 #include <QElapsedTimer>
-#include <QMetaObject>
-#include <QOpenGLWidget>
 #include <QPointF>
 #include <QTimer>
+#include <QWidget>
 
-class vtkGenericOpenGLRenderWindow;
+#include "ui/scene3d/scene_canvas.h"
+
 class vtkGenericRenderWindowInteractor;
-class vtkObject;
-class vtkRenderer;
 
 namespace skincal {
 
 /// A VTK renderer inside a Qt window: left drag turns, shift or middle drag shifts, right drag and the wheel zoom.
-/// Draws on the GUI thread, at most 30 times a second, and only after requestDraw() or a camera movement. Where the
-/// computer draws slowly, edges are smoothed only while nothing moves.
-/// Needs QApplication's default QSurfaceFormat to be sceneFormat(), and a platform with OpenGL (xcb, not offscreen).
-/// May be moved to another window, and destroyed at any time; what was put into renderer() goes with it.
-class SceneWidget : public QOpenGLWidget {
+/// Draws on the GUI thread, at most 30 times a second, only while it is shown, and only after requestDraw() or a camera
+/// movement. Where the processor draws, edges are smoothed in pictures only, since that takes it several times as long.
+/// Needs a platform with OpenGL (xcb, not offscreen). May be moved to another window, and destroyed at any time.
+class SceneWidget : public QWidget {
     Q_OBJECT
   public:
     explicit SceneWidget(QWidget* parent = nullptr);
     ~SceneWidget() override;
 
-    /// OpenGL 3.2 core, for QSurfaceFormat::setDefaultFormat before the application is made.
-    [[nodiscard]] static QSurfaceFormat sceneFormat();
-
-    [[nodiscard]] vtkRenderer& renderer() const;
+    [[nodiscard]] vtkRenderer& renderer() const { return canvas_.renderer(); }
 
     /// Something has changed: draws soon. Cheap, however often it is called.
     void requestDraw();
 
-    /// The same for one of many changes in a row, which matter more than smooth edges where drawing is slow.
-    void animate();
+    /// Without waiting for the frame's turn.
+    void drawNow();
+
+    /// Draws what there is in a small picture that nobody sees.
+    void warmUp();
 
     /// Turns the camera about what it looks at, rad: to the right and upwards.
     void orbit(double right, double up);
     /// Goes nearer by a factor; below 1, further away.
     void zoom(double factor);
 
+    /// The scene as it is now, smoothed, even where it is hidden; empty only where there is no OpenGL.
+    [[nodiscard]] QImage grabPicture();
+
     /// Frames drawn since the beginning; for tests.
     [[nodiscard]] int framesDrawn() const { return framesDrawn_; }
 
   signals:
-    /// Just before a frame, at the pace of the frames: what is painted over the scene can follow now.
-    void aboutToDraw();
     /// The user has turned, shifted or zoomed.
     void cameraMovedByUser();
     /// A click without a drag, and where, in this widget's coordinates.
@@ -55,37 +53,25 @@ class SceneWidget : public QOpenGLWidget {
     void doubleClicked();
 
   protected:
-    void initializeGL() override;
-    void paintGL() override;
+    void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+    void showEvent(QShowEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
     void mouseDoubleClickEvent(QMouseEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
-    bool event(QEvent* event) override;
 
   private:
-    void makeCurrentForVtk(vtkObject* caller, unsigned long event, void* data);
-    void answerIsCurrent(vtkObject* caller, unsigned long event, void* data);
-    void answerYes(vtkObject* caller, unsigned long event, void* data);
-    void drawLater(vtkObject* caller, unsigned long event, void* data);
-    void releaseGraphics();
     void tellPosition(const QPointF& position, Qt::KeyboardModifiers modifiers);
-    void moved();
-    void drawNow();
-    void takeSize();
+    [[nodiscard]] QSize sizeInPixels() const;
 
-    vtkSmartPointer<vtkGenericOpenGLRenderWindow> window_;
+    SceneCanvas canvas_;
     vtkSmartPointer<vtkGenericRenderWindowInteractor> interactor_;
-    vtkSmartPointer<vtkRenderer> renderer_;
-    QMetaObject::Connection contextGoes_;
     QTimer drawTimer_;
-    QTimer restTimer_;  ///< runs while something moves
     QElapsedTimer sinceFrame_;
     QPointF pressedAt_;
     bool dragging_ = false;
-    bool slow_ = false;
-    bool painting_ = false;
     int framesDrawn_ = 0;
 };
 

@@ -57,6 +57,10 @@ QString Theme::styleSheet() const {
                "QPushButton:checked { background: %7; border-color: %4; }"
                "QPushButton[primary=\"true\"]:enabled { background: %4; color: %6; border-color: %4; font-weight: 600; "
                "}"
+               // Fusion fills the groove of a disabled slider with the accent, as if it could be moved.
+               "QSlider::groove:horizontal:disabled { height: 3px; background: %1; border-radius: 1px; }"
+               "QSlider::handle:horizontal:disabled { width: 11px; margin: -4px 0; background: %5; border-radius: 5px; "
+               "}"
                "QSplitter::handle { background: %1; }"
                "QProgressBar { border: 1px solid %1; border-radius: 4px; background: %3; text-align: center; "
                "min-height: 18px; }"

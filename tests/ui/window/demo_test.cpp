@@ -6,11 +6,9 @@
 #include <QLineEdit>
 #include <QProgressBar>
 #include <QTemporaryDir>
-#include <iostream>
 
 #include "core/estimation/compare.h"
 #include "core/formats/body_json.h"
-#include "tests/ui/watchful_application.h"
 #include "tests/ui/window/driven_window.h"
 
 namespace skincal {
@@ -88,8 +86,6 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     EXPECT_EQ(difference.compared, driven.rig.world().skin.modules.size());
     EXPECT_LT(difference.positionRms, 1e-3);
     EXPECT_LT(difference.rotationRms, 1.5 * kDegree);
-    const WatchfulApplication::Stall& stall = WatchfulApplication::instance().longest();
-    std::cout << "longest event: " << 1e3 * stall.seconds << " ms, " << stall.what << '\n';
 }
 
 }  // namespace

@@ -9,10 +9,14 @@
 
 namespace skincal {
 
-/// The real window on a simulated rig whose clock goes as fast as events do, driven by clicks and keys.
+/// The real window on a simulated rig whose clock goes as fast as events do, driven by clicks and keys. The test fails
+/// where any event from its first picture to its end kept the window from the others for too long.
 class DrivenWindow {
   public:
     explicit DrivenWindow(const std::string& scenario = "demo");
+    ~DrivenWindow();
+    DrivenWindow(const DrivenWindow&) = delete;
+    DrivenWindow& operator=(const DrivenWindow&) = delete;
 
     /// Runs the event loop until something is so; fails the test where it never is.
     [[nodiscard]] bool waitFor(const std::function<bool()>& isSo);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tuple>
+
 #include "resources/firmware/skin_cell.h"
 #include "tests/fuzz/made_message.h"
 
@@ -62,7 +64,13 @@ class CellBench {
             course_[static_cast<std::size_t>(port)].now = now_;
             bytes.clear();
             appendArrival(record, course_[static_cast<std::size_t>(port)], bytes);
+            const auto orders = [&] {
+                return std::tuple(cell_.leds.queued, cell_.leds.word_set, cell_.to_report, cell_.senses.run);
+            };
+            const auto before = orders();
+            const auto [epoch, parent] = std::pair(cell_.tree.epoch, cell_.tree.parent);
             skin_cell_receive(&cell_, port, bytes.data(), bytes.size());
+            require(port == parent || cell_.tree.epoch != epoch || orders() == before, "orders of others are obeyed");
             check();
             if (what < 192)
                 run(300);

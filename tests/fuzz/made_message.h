@@ -208,7 +208,7 @@ inline FrameHeader makeHeader(const MessageShape& shape, Course& course, ByteSou
     if (shape.usual != FrameDirection::Local || shape.type == FrameType::Ack) {
         const std::uint64_t first = from.number();
         header.first =
-            static_cast<std::uint16_t>(shape.usual == FrameDirection::Down ? course.cell - 2 + first : first);
+            static_cast<std::uint16_t>(shape.usual == FrameDirection::Down ? course.cell + 3 - first : first);
         header.count = static_cast<std::uint16_t>(from.number());
     }
     if (odd & 1U)

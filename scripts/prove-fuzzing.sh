@@ -23,7 +23,7 @@ search() {
     -seed=1 -print_final_stats=1 kept tests/fuzz/corpus_protocol/"$1" > found.log 2>&1
 }
 tried() { sed -n 's/^stat::number_of_executed_units: *//p' found.log; }
-reason() { grep -m1 -oE 'what\(\):.*|runtime error: .*|AddressSanitizer: [a-zA-Z-]+|libFuzzer: [a-z-]+' found.log; }
+reason() { grep -m1 -oE 'what\(\):.*|runtime error: .*|Assertion .*|AddressSanitizer: [a-zA-Z-]+|libFuzzer: [a-z-]+' found.log; }
 
 for target in frames cell client; do
   search $target || { echo "$target: found where nothing was planted: $(reason)"; exit 1; }

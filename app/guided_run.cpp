@@ -24,6 +24,7 @@ GuidedRun::GuidedRun(Workbench& workbench, GuidedRunOptions options)
       connect_(workbench),
       poses_(workbench),
       scan_(workbench),
+      before_(workbench.session().measured().skin),
       input_(fileno(stdin), QSocketNotifier::Read),
       patience_(this) {
     input_.setEnabled(false);
@@ -103,12 +104,26 @@ void GuidedRun::begin() {
 }
 
 void GuidedRun::connected() {
-    const Skin& skin = workbench_.session().measured().skin;
-    say(QStringLiteral("%1 modules, %2 links").arg(skin.modules.size()).arg(skin.links.size()));
+    const Measured& measured = workbench_.session().measured();
+    if (!before_.modules.empty() && !sameSkin(before_, measured.skin))
+        return stop(QStringLiteral("the recording is of another skin"));
+    say(QStringLiteral("%1 modules, %2 links").arg(measured.skin.modules.size()).arg(measured.skin.links.size()));
+    captured_ = static_cast<int>(posesOf(measured, workbench_.session().decisions()).size());
+    scanned_ = static_cast<int>(measured.views.size());
+    if (captured_ > 0)
+        say(QStringLiteral("%1 poses and %2 views are there already").arg(captured_).arg(scanned_));
     save();
+    beginPoses();
+}
+
+void GuidedRun::beginPoses() {
     step_ = Step::Posing;
+    if (captured_ >= options_.poses)
+        return endPoses();
     poses_.setAutomatic(true);
     poses_.setActive(true);
+    if (captured_ > 0)
+        return nextPose();
     say(QStringLiteral("Pose 1 of %1: let the body rest").arg(options_.poses));
     patience_.start(options_.patience);
 }
@@ -129,17 +144,20 @@ void GuidedRun::poseCaptured(int /*pose*/) {
         return;
     patience_.stop();
     save();
-    if (++captured_ < options_.poses) {
+    if (++captured_ < options_.poses)
         nextPose();
-        return;
-    }
+    else
+        endPoses();
+}
+
+void GuidedRun::endPoses() {
     poses_.setActive(false);
-    step_ = Step::Camera;
-    if (options_.views == 0) {
+    if (scanned_ >= options_.views) {
         step_ = Step::Done;
         save();
         return;
     }
+    step_ = Step::Camera;
     say(QStringLiteral("Starting the camera"));
     patience_.start(options_.patience);
     workbench_.chooseCamera(0);

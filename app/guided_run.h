@@ -22,7 +22,8 @@ struct GuidedRunOptions {
 
 /// The guided procedure without a window: connect, poses, views, each written to the recording as soon as it is there.
 /// It drives the presenters that the window's pages show; lines on standard error say what is going on and what a
-/// person has to do, Enter says that it is done.
+/// person has to do, Enter says that it is done. Poses and views that the session has already are not taken again; it
+/// stops where they are of another skin.
 ///
 /// Commands run before each pose and view but the first, with SKINCAL_POSE or SKINCAL_VIEW set to its number from 0 on,
 /// and SKINCAL_UP to where up should point, in the frame of the module SKINCAL_MODULE ("x y z").
@@ -41,6 +42,8 @@ class GuidedRun : public QObject {
     enum class Step { Connecting, Posing, Camera, Scanning, Done };
 
     void connected();
+    void beginPoses();
+    void endPoses();
     void nextPose();
     void poseCaptured(int pose);
     void nextView();
@@ -58,6 +61,7 @@ class GuidedRun : public QObject {
     ConnectPresenter connect_;
     PosePresenter poses_;
     ScanPresenter scan_;
+    const Skin before_;  ///< of what is gone on with; without modules where nothing is
     Step step_ = Step::Connecting;
     int captured_ = 0;
     int scanned_ = 0;

@@ -123,6 +123,16 @@
     </message>
 </context>
 <context>
+    <name>skincal::ProblemModel</name>
+    <message numerus="yes">
+        <source>%n modules did not answer: %1</source>
+        <translation>
+            <numerusform>%n module did not answer: %1</numerusform>
+            <numerusform>%n modules did not answer: %1</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>skincal::ScanPage</name>
     <message numerus="yes">
         <source>, %n spots</source>

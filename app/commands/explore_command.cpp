@@ -1,21 +1,20 @@
 #include <fmt/format.h>
 
-#include <QCoreApplication>
-#include <csignal>
 #include <map>
 
+#include "app/command_application.h"
 #include "app/command_line.h"
-#include "app/known_templates.h"
+#include "app/skin_address.h"
 #include "app/text_layout.h"
 #include "core/device/protocol_skin.h"
+#include "core/formats/file_error.h"
 #include "core/skin/patches.h"
 
 namespace skincal {
 namespace {
 
 struct ExploreArguments {
-    std::string device;
-    std::vector<std::filesystem::path> templates;
+    SkinArguments skin;
     bool json = false;
 };
 
@@ -64,18 +63,11 @@ void print(const Skin& skin, const SkinNetwork& network) {
 }
 
 int runExplore(const ExploreArguments& arguments) {
-    const auto address = parseLineAddress(QString::fromStdString(arguments.device));
+    const auto address = skinAddress(arguments.skin);
     if (!address)
-        return badInput(address.error().toStdString());
-    const auto templates = knownTemplates(arguments.templates);
-    if (!templates)
-        return badInput(templates.error().message());
-    int argc = 1;
-    std::array<char, 8> name{"skincal"};
-    std::array<char*, 2> argv{name.data(), nullptr};
-    QCoreApplication application(argc, argv.data());
-    std::signal(SIGINT, [](int) { QCoreApplication::exit(kDataDoNotSuffice); });
-    ProtocolSkin device(*address, *templates);
+        return badInput(address.error());
+    const CommandApplication<QCoreApplication> application;
+    ProtocolSkin device(address->line, address->templates);
     QObject::connect(&device, &SkinDevice::opened, &device, [&] { device.explore(); });
     QObject::connect(&device, &SkinDevice::failed, &application,
                      [](const QString& why) { QCoreApplication::exit(badInput(why.toStdString())); });
@@ -96,12 +88,12 @@ void addExploreCommand(CommandLine& line) {
     auto arguments = std::make_shared<ExploreArguments>();
     CLI::App* command = line.app.add_subcommand("explore", "Ask a skin for its modules and how they are linked");
     command
-        ->add_option("device", arguments->device,
+        ->add_option("device", arguments->skin.device,
                      "A serial port (/dev/ttyUSB0, or with its speed /dev/ttyUSB0@921600), tcp://host:port, or "
                      "exec:COMMAND, a program that speaks the protocol on its input and output")
         ->required();
     command->add_option(
-        "--template", arguments->templates,
+        "--template", arguments->skin.templates,
         "Module templates of your own (JSON), where cells are none of those that come with the program");
     command->add_flag("--json", arguments->json, "Print JSON");
     command->footer(

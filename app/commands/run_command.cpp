@@ -2,33 +2,34 @@
 
 #include <QFileInfo>
 #include <QGuiApplication>
-#include <csignal>
 
 #include "app/calibrate_to_file.h"
+#include "app/command_application.h"
 #include "app/command_line.h"
 #include "app/guided_run.h"
-#include "app/known_templates.h"
 #include "app/outcome.h"
+#include "app/skin_address.h"
 #include "core/camera/media_source.h"
 #include "core/camera/webcam_source.h"
 #include "core/formats/camera_file.h"
 #include "core/formats/recording.h"
+#include "core/session/session_storage.h"
 #include "ui/presenters/skin_offer.h"
 
 namespace skincal {
 namespace {
 
 struct RunArguments {
-    std::string device;
+    SkinArguments skin;
     std::string camera;
     std::string intrinsics;
     std::filesystem::path output;
     std::filesystem::path body;
-    std::vector<std::filesystem::path> templates;
     GuidedRunOptions options;
     std::string onPose;
     std::string onView;
     bool force = false;
+    bool resume = false;
     bool json = false;
 };
 
@@ -73,19 +74,18 @@ int calibrateRecording(const RunArguments& arguments) {
 }
 
 int runGuided(RunArguments arguments) {
-    const auto address = parseLineAddress(QString::fromStdString(arguments.device));
+    const auto address = skinAddress(arguments.skin);
     if (!address)
-        return badInput(address.error().toStdString());
-    const auto templates = knownTemplates(arguments.templates);
-    if (!templates)
-        return badInput(templates.error().message());
-    if (std::filesystem::exists(arguments.output / "recording.json") && !arguments.force)
-        return badInput(arguments.output.string() + " holds a recording already: --force replaces it");
+        return badInput(address.error());
+    const bool isBegun = std::filesystem::exists(arguments.output / "recording.json");
+    if (isBegun && !arguments.force && !arguments.resume)
+        return badInput(arguments.output.string() +
+                        " holds a recording already: --resume goes on with it, --force replaces it");
     if (arguments.body.empty()) {
         arguments.body = arguments.output;
         arguments.body.replace_extension(".body.json");
     }
-    if (!arguments.force) {
+    if (!arguments.force && !arguments.resume) {
         if (const auto complaint = complaintAboutExisting(arguments.body))
             return badInput(*complaint);
     }
@@ -96,13 +96,16 @@ int runGuided(RunArguments arguments) {
     prepareMultimedia();
     if (qEnvironmentVariableIsEmpty("QT_QPA_PLATFORM"))
         qputenv("QT_QPA_PLATFORM", "offscreen");
-    int argc = 1;
-    std::array<char, 8> name{"skincal"};
-    std::array<char*, 2> argv{name.data(), nullptr};
-    QGuiApplication application(argc, argv.data());
+    const CommandApplication<QGuiApplication> application;
     Workbench workbench;
-    workbench.moduleTypes = *templates;
-    workbench.skinOffers.push_back(offerOfAddress(*address, *templates));
+    if (isBegun && arguments.resume) {
+        auto begun = readSession(arguments.output);
+        if (!begun)
+            return badInput(begun.error());
+        workbench.session().load(*std::move(begun));
+    }
+    workbench.moduleTypes = address->templates;
+    workbench.skinOffers.push_back(offerOfAddress(address->line, address->templates));
     if (arguments.options.views > 0) {
         const auto list = std::make_shared<CameraList>();
         waitForCameras(*list);
@@ -126,15 +129,16 @@ int runGuided(RunArguments arguments) {
             why = reason;
             QCoreApplication::quit();
         });
-        std::signal(SIGINT, [](int) { QCoreApplication::quit(); });
-        std::signal(SIGTERM, [](int) { QCoreApplication::quit(); });
         run.begin();
         QCoreApplication::exec();
     }
+    const std::string howToGoOn =
+        "; what was measured is in " + arguments.output.string() + ", and --resume goes on with it";
+    const auto& measured = workbench.session().measured();
     if (!why)
-        return dataDoNotSuffice("interrupted; what was measured is in " + arguments.output.string());
+        return dataDoNotSuffice("interrupted" + howToGoOn);
     if (!why->isEmpty())
-        return badInput(why->toStdString());
+        return badInput(why->toStdString() + (measured.gravity.empty() ? std::string() : howToGoOn));
     return calibrateRecording(arguments);
 }
 
@@ -144,7 +148,7 @@ void addRunCommand(CommandLine& line) {
     auto arguments = std::make_shared<RunArguments>();
     CLI::App* command = line.app.add_subcommand(
         "run", "Calibrate a skin from start to end without a window: connect, poses, views, body model");
-    command->add_option("--device", arguments->device, "The skin's address, see \"skincal explore --help\"")
+    command->add_option("--device", arguments->skin.device, "The skin's address, see \"skincal explore --help\"")
         ->required();
     command->add_option("--camera", arguments->camera,
                         "Name or node (/dev/video0) of a webcam, a video file or the address of a stream");
@@ -154,7 +158,7 @@ void addRunCommand(CommandLine& line) {
         ->required();
     command->add_option("-o,--output", arguments->output, "The recording, a directory *.skinrec")->required();
     command->add_option("--body", arguments->body, "The body model [the output with .body.json]");
-    command->add_option("--template", arguments->templates, "Module templates of your own (JSON)");
+    command->add_option("--template", arguments->skin.templates, "Module templates of your own (JSON)");
     command->add_option("--poses", arguments->options.poses, "How many gravity poses")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
@@ -165,7 +169,11 @@ void addRunCommand(CommandLine& line) {
                         "Shell command that turns the body, run before each pose but the first");
     command->add_option("--on-view", arguments->onView,
                         "Shell command that moves the camera, run before each view but the first");
-    command->add_flag("--force", arguments->force, "Replace what is there");
+    CLI::Option* force = command->add_flag("--force", arguments->force, "Replace what is there");
+    command
+        ->add_flag("--resume", arguments->resume,
+                   "Go on with the recording where it was broken off, if it is of the same skin")
+        ->excludes(force);
     command->add_flag("--json", arguments->json, "Print the result as JSON");
     command->footer(
         "Without commands it says what to do, and waits: for a pose until the body rests, for a view until Enter is\n"

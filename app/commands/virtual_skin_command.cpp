@@ -1,15 +1,14 @@
-#include <QCoreApplication>
 #include <QFile>
 #include <QSocketNotifier>
 #include <QTcpServer>
 #include <QTcpSocket>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "app/command_application.h"
 #include "app/command_line.h"
 #include "core/rig/pseudo_terminal.h"
 #include "core/rig/wired_skin.h"
@@ -113,12 +112,7 @@ int runVirtualSkin(const VirtualSkinArguments& arguments) {
     const Scenario* scenario = findScenario(arguments.scenario);
     if (scenario == nullptr)
         return badInput("there is no scenario \"" + arguments.scenario + "\"; \"skincal simulate --list\" names them");
-    int argc = 1;
-    std::array<char, 8> name{"skincal"};
-    std::array<char*, 2> argv{name.data(), nullptr};
-    QCoreApplication application(argc, argv.data());
-    std::signal(SIGINT, [](int) { QCoreApplication::quit(); });
-    std::signal(SIGTERM, [](int) { QCoreApplication::quit(); });
+    const CommandApplication<QCoreApplication> application;
 
     SimulatedRig rig(*scenario, arguments.seed);
     WireFaults faults = arguments.faults;

@@ -142,6 +142,21 @@ void ProtocolSkin::prepare(const std::vector<std::vector<LitModule>>& sets) {
     post(worker_, [worker = worker_, cells = std::move(cells)] { worker->prepare(cells); });
 }
 
+std::vector<SilentModule> ProtocolSkin::silent() const {
+    std::vector<SilentModule> silent;
+    for (const CellNumber number : network_.missing) {
+        SilentModule& one = silent.emplace_back(SilentModule{number, {}});
+        for (const NetworkCell& cell : network_.cells) {
+            const auto module = moduleOf_.find(cell.number);
+            const bool hears = std::any_of(cell.heard.begin(), cell.heard.end(),
+                                           [&](const NetworkCell::Heard& heard) { return heard.cell == number; });
+            if (hears && module != moduleOf_.end())
+                one.beside.push_back(module->second);
+        }
+    }
+    return silent;
+}
+
 std::uint64_t ProtocolSkin::light(const std::vector<LitModule>& lit) {
     lit_ = lit;
     ++token_;

@@ -33,6 +33,7 @@ class ProtocolSkin : public SkinDevice {
     std::uint64_t light(const std::vector<LitModule>& lit) override;
     void remember(const Skin& skin) override { modules_.remember(skin); }
     void prepare(const std::vector<std::vector<LitModule>>& sets) override;
+    [[nodiscard]] std::vector<SilentModule> silent() const override;
 
     /// As cells described it in the newest exploration, those included that did not answer.
     [[nodiscard]] const SkinNetwork& network() const { return network_; }

@@ -34,6 +34,12 @@ struct TactileSample {
     std::vector<Reading> readings;
 };
 
+/// A module that is there and said nothing about itself, however often it was asked.
+struct SilentModule {
+    int number = 0;                ///< in the network, by today's exploration
+    std::vector<ModuleId> beside;  ///< modules that say they are linked to it
+};
+
 /// A skin that can be asked: over a wire, simulated, or from a recording. Everything is asynchronous: functions return
 /// at once, what comes of them is a signal, sent from the event loop, never from inside the call. Signals may come in
 /// any order and some never (a cable can be pulled at any time); whoever waits sets a timeout.
@@ -62,6 +68,8 @@ class SkinDevice : public QObject {
 
     /// Modules of an earlier time: those that have a unique id keep their module ids.
     virtual void remember(const Skin& /*skin*/) {}
+    /// Whom the newest exploration counted and could not ask.
+    [[nodiscard]] virtual std::vector<SilentModule> silent() const { return {}; }
     /// These will be lit, one after the other or in any order: a device may tell its cells beforehand.
     virtual void prepare(const std::vector<std::vector<LitModule>>& /*sets*/) {}
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-enum { TYPE_EXPLORE = 11, WINDOW = 32 };
+enum { TYPE_EXPLORE = 11, TYPE_NEIGHBOUR = 15, TYPE_TALLIED = 35, WINDOW = 32 };
 
 static bool reached(uint32_t now, uint32_t when) {
     return (int32_t)(now - when) >= 0;
@@ -52,10 +52,13 @@ skin_buffer* skin_link_queue(skin_link* link, const skin_header* header, uint8_t
     return NULL;
 }
 
-void skin_link_drop_routed(skin_link* link) {
-    for (int b = 0; b < SKIN_BUFFERS; ++b)
-        if (link->buffer[b].header.direction != SKIN_LOCAL)
+void skin_link_drop_explored(skin_link* link) {
+    for (int b = 0; b < SKIN_BUFFERS; ++b) {
+        const skin_header* header = &link->buffer[b].header;
+        if (header->direction != SKIN_LOCAL || (header->type >= TYPE_EXPLORE && header->type <= TYPE_NEIGHBOUR) ||
+            header->type == TYPE_TALLIED)
             link->buffer[b].waiting = 0;
+    }
 }
 
 void skin_link_drop_port(skin_link* link, int port) {

@@ -92,8 +92,9 @@ int skin_link_room(const skin_link* link);
  * at once. */
 skin_buffer* skin_link_queue(skin_link* link, const skin_header* header, uint8_t ports);
 
-/* Forgets everything that is not for a neighbour alone: what it says belongs to an exploration that has ended. */
-void skin_link_drop_routed(skin_link* link);
+/* Forgets what belongs to an exploration that has ended: all but what a neighbour is told whatever the numbers are.
+ * Epochs wrap: what waits for long might be taken for a newer one's. */
+void skin_link_drop_explored(skin_link* link);
 
 /* Forgets what has not been acknowledged on a port. */
 void skin_link_drop_port(skin_link* link, int port);

@@ -3,6 +3,12 @@
 
 #include "skin_parts.h"
 
+/* The clock wraps: of what is further ahead than half its range nobody can tell that it isn't over. */
+static uint32_t microseconds(uint32_t ms) {
+    const uint32_t most = 2000000;
+    return (ms < most ? ms : most) * 1000;
+}
+
 static bool samples(const skin_cell* cell) {
     return cell->senses.measuring || cell->senses.streams[skincal_wire_Subject_REST];
 }
@@ -34,7 +40,7 @@ void skin_senses_receive(skin_cell* cell, const skin_header* header, const uint8
         begin(cell, &senses->measured);
         senses->run = told.run;
         senses->measuring = true;
-        senses->measure_until = now + told.period_ms * 1000;
+        senses->measure_until = now + microseconds(told.period_ms);
         return;
     }
     skincal_wire_Stream told = skincal_wire_Stream_init_zero;
@@ -50,7 +56,7 @@ void skin_senses_receive(skin_cell* cell, const skin_header* header, const uint8
         if (subject == skincal_wire_Subject_REST)
             begin(cell, &senses->streamed);
         senses->streams[subject] = told.period_ms > 0;
-        senses->period_us[subject] = told.period_ms * 1000;
+        senses->period_us[subject] = microseconds(told.period_ms);
         /* Not all cells at once. */
         const uint64_t share = (uint64_t)cell->tree.number * 0x9E3779B1u & 0xFFFFFFFFu;
         senses->next_us[subject] = now + (uint32_t)(share * senses->period_us[subject] >> 32);

@@ -29,7 +29,7 @@ static bool explore(skin_cell* cell, int port, uint8_t epoch) {
     }
     if (tree->epoch != 0 && (int8_t)(epoch - tree->epoch) < 0)
         return true; /* of one that has ended */
-    skin_link_drop_routed(&cell->link);
+    skin_link_drop_explored(&cell->link);
     if (skin_link_room(&cell->link) < 2)
         return false;
     memset(tree, 0, sizeof *tree);
@@ -70,7 +70,7 @@ static void explored(skin_cell* cell, int port, const uint8_t* payload, size_t l
 static void subtree(skin_cell* cell, int port, const uint8_t* payload, size_t length) {
     skin_tree* tree = &cell->tree;
     skincal_wire_Subtree theirs = skincal_wire_Subtree_init_zero;
-    if (!skin_parse(skincal_wire_Subtree_fields, &theirs, payload, length))
+    if (port == tree->parent || !skin_parse(skincal_wire_Subtree_fields, &theirs, payload, length))
         return;
     if (tree->reported) {
         /* A branch that was given up too early: it has no numbers. The computer should begin again. */
@@ -82,7 +82,7 @@ static void subtree(skin_cell* cell, int port, const uint8_t* payload, size_t le
     tree->open &= (uint8_t)~bit(port);
     tree->children |= bit(port);
     tree->uncounted &= (uint8_t)~bit(port);
-    tree->below[port] = (uint16_t)theirs.cells;
+    tree->below[port] = (uint16_t)(theirs.cells < 0xFFFF ? theirs.cells : 0xFFFF);
 }
 
 static bool assign(skin_cell* cell, int port, const uint8_t* payload, size_t length) {

@@ -32,8 +32,8 @@ constexpr auto kCameraName = "Webcam on the desk";
 /// Skin, body and camera on a desk, and somebody who does what files in a folder ask for.
 class DeskWithWires {
   public:
-    explicit DeskWithWires(const char* scenario, const WireFaults& faults = {})
-        : rig_(*findScenario(scenario), 5), skin_(rig_, faults) {
+    explicit DeskWithWires(const char* scenario, const WireFaults& faults = {}, std::uint64_t seed = 5)
+        : rig_(*findScenario(scenario), seed), skin_(rig_, faults) {
         rig_.setCameraLatency(std::chrono::milliseconds(0));
         const CameraModel& lens = rig_.world().scenario.camera;
         seen_.T_r_v = rig_.cameraPose();
@@ -200,6 +200,56 @@ TEST(GuidedRun, OnABadWireItIsTheSame) {
     EXPECT_EQ(recording->skin.modules.size(), desk.rig().world().T_r_u.size());
     EXPECT_EQ(recording->skin.links.size(), desk.rig().world().skin.links.size());
     EXPECT_EQ(recording->gravity.size(), 5 * desk.rig().world().T_r_u.size());
+}
+
+TEST(GuidedRun, GoesOnWithWhatWasBrokenOff) {
+    DeskWithWires desk("demo");
+    const QString onPose = QStringLiteral("echo $SKINCAL_POSE > %1").arg(desk.file("pose"));
+    const QString onView = QStringLiteral("echo $SKINCAL_VIEW > %1; sleep 2").arg(desk.file("view"));
+    const auto arguments = [&](const char* views, const QString& pose, const QString& view) {
+        return QStringList{"run",           "--device",  desk.port(),
+                           "--camera",      kCameraName, "--intrinsics",
+                           desk.lensFile(), "-o",        desk.file("desk.skinrec"),
+                           "--poses",       "4",         "--views",
+                           views,           "--on-pose", pose,
+                           "--on-view",     view};
+    };
+    // Killed at its third pose, then before its second view, once what was measured before is written.
+    const auto killedWhen = [&](const char* word, const char* file) {
+        return QStringLiteral("until grep -q '%1' %2/%3; do sleep 0.1; done; kill -9 $PPID")
+            .arg(QLatin1String(word), desk.file("desk.skinrec"), QLatin1String(file));
+    };
+    EXPECT_EQ(desk.run(arguments("2",
+                                 QStringLiteral("if [ $SKINCAL_POSE = 2 ]; then %1; else %2; fi")
+                                     .arg(killedWhen("^1,", "gravity.csv"), onPose),
+                                 onView)),
+              -1);
+    EXPECT_NE(desk.run(arguments("2", onPose, onView)), 0) << "somebody's recording is not to be lost";
+    EXPECT_NE(desk.output.find("--resume"), std::string::npos) << desk.output;
+    EXPECT_EQ(desk.run(arguments("2", onPose, killedWhen("view0", "recording.json")) << "--resume"), -1) << desk.output;
+    EXPECT_NE(desk.output.find("2 poses and 0 views"), std::string::npos) << desk.output;
+    const auto begun = readRecording(desk.file("desk.skinrec").toStdString());
+    ASSERT_TRUE(begun) << desk.output;
+    ASSERT_EQ(begun->views.size(), 1U);
+
+    // No pose is taken again: nobody would turn the body.
+    const int code = desk.run(arguments("2", "exit 1", onView) << "--resume");
+    EXPECT_TRUE(code == 0 || code == 1) << desk.output;
+    const auto whole = readRecording(desk.file("desk.skinrec").toStdString());
+    ASSERT_TRUE(whole) << desk.output;
+    EXPECT_EQ(whole->gravity.size(), 4 * desk.rig().world().T_r_u.size());
+    ASSERT_EQ(whole->views.size(), 2U);
+    for (std::size_t i = 0; i < begun->gravity.size(); ++i)
+        EXPECT_EQ(whole->gravity[i].acceleration, begun->gravity[i].acceleration);
+    EXPECT_EQ(whole->views.front().frames.front().file, begun->views.front().frames.front().file);
+
+    // With another skin it is left alone.
+    DeskWithWires other("arm", {}, 6);
+    QStringList strange = arguments("3", onPose, onView) << "--resume";
+    strange[2] = other.port();
+    EXPECT_EQ(desk.run(strange), 2);
+    EXPECT_NE(desk.output.find("another skin"), std::string::npos) << desk.output;
+    EXPECT_EQ(readRecording(desk.file("desk.skinrec").toStdString())->views.size(), 2U);
 }
 
 TEST(GuidedRun, SaysWhatIsMissing) {

@@ -28,6 +28,21 @@ QString numbersOf(const std::vector<ModuleId>& modules) {
     return numbers.join(QStringLiteral(", "));
 }
 
+/// By their neighbours, whom the operator can find; by numbers of the network where nobody knows them.
+QString namesOf(const std::vector<SilentModule>& silent) {
+    constexpr qsizetype kNamed = 8;  // more make no sentence
+    QStringList names;
+    for (const SilentModule& one : silent) {
+        if (names.size() == kNamed) {
+            names << QStringLiteral("…");
+            break;
+        }
+        names << (one.beside.empty() ? ProblemModel::tr("number %1 of the network").arg(one.number)
+                                     : ProblemModel::tr("beside module %1").arg(numbersOf(one.beside)));
+    }
+    return names.join(QStringLiteral("; "));
+}
+
 Step stepOf(Shortfall::Kind kind) {
     switch (kind) {
         case Shortfall::Kind::GravityMissing:
@@ -178,6 +193,18 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
         problems.push_back(*kept_);
     if (connection_.state().phase == Connection::Phase::Lost)
         problems.push_back({Severity::Error, Step::Connect, connection_.why(), {}, {}});
+    if (const auto silent = workbench_.isSkinReady() ? workbench_.skin()->silent() : std::vector<SilentModule>();
+        !silent.empty()) {
+        Problem problem{Severity::Warning,
+                        Step::Connect,
+                        tr("%n modules did not answer: %1", nullptr, static_cast<int>(silent.size())),
+                        {},
+                        {}};
+        problem.text = problem.text.arg(namesOf(silent));
+        for (const SilentModule& one : silent)
+            problem.modules.insert(problem.modules.end(), one.beside.begin(), one.beside.end());
+        problems.push_back(std::move(problem));
+    }
     if (!cameraFailure_.isEmpty())
         problems.push_back({Severity::Error, Step::Camera, cameraFailure_, {}, {}});
     if (workbench_.camera() != nullptr && mayBrightnessChange(workbench_.camera()->controls()))

@@ -80,12 +80,16 @@ void SkinClient::sendAll(FrameType type, std::string payload) {
 
 void SkinClient::fail(SkinFault fault) {
     phase_ = phase_ == Phase::Greeting ? Phase::Closed : Phase::Open;
+    forget();
+    listener_.onFault(fault);
+}
+
+void SkinClient::forget() {
     cells_ = 0;
     info_.reset();
     rest_.reset();
     shown_.reset();
     link_.clear();
-    listener_.onFault(fault);
 }
 
 void SkinClient::open(Time now, Time patience) {
@@ -105,11 +109,7 @@ void SkinClient::explore(Time now) {
         return;
     if (phase_ != Phase::Flooding && phase_ != Phase::Describing)
         attempts_ = 0;
-    link_.clear();
-    cells_ = 0;
-    info_.reset();
-    rest_.reset();
-    shown_.reset();
+    forget();
     epoch_ = static_cast<std::uint8_t>(epoch_ == 255 ? 1 : epoch_ + 1);
     phase_ = Phase::Flooding;
     due_ = now + kFlood;
@@ -175,10 +175,12 @@ void SkinClient::takeLocal(const FrameHeader& header, std::string_view payload, 
             tallied(payload, now);
             return;
         case FrameType::Booted:
-            if (phase_ != Phase::Closed && phase_ != Phase::Greeting) {
-                cells_ = 0;
-                listener_.onRestarted();
+            if (phase_ == Phase::Describing || phase_ == Phase::Explored) {
+                phase_ = Phase::Open;
+                forget();
             }
+            if (phase_ != Phase::Closed && phase_ != Phase::Greeting)
+                listener_.onRestarted();
             return;
         default:
             return;

@@ -86,6 +86,8 @@ class SkinClient {
     void pollCells(int subject, std::optional<CellPoll>& poll, Time now);
     void listen(Time now);
     void fail(SkinFault fault);
+    /// Everything of the last exploration.
+    void forget();
 
     void sendLocal(FrameType type, std::string payload = {});
     void sendAll(FrameType type, std::string payload = {});

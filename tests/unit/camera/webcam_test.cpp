@@ -4,9 +4,12 @@
 #include <QMediaDevices>
 #include <QSignalSpy>
 #include <algorithm>
+#include <cstdlib>
+#include <iostream>
 #include <opencv2/core.hpp>
 
 #include "core/camera/webcam_source.h"
+#include "core/geometry/random.h"
 #include "core/simulation/renderer.h"
 #include "core/simulation/world.h"
 #include "tests/fixtures/virtual_camera/virtual_camera.h"
@@ -151,29 +154,44 @@ TEST_F(Webcam, WhoseDeviceIsGoneIsNotStarted) {
     EXPECT_EQ(camera_->failure()->trouble, CameraTrouble::NotPluggedIn);
 }
 
+// In full with SKINCAL_UNPLUGS=1000.
 TEST_F(Webcam, UnpluggedIsNoticedWithinASecondAndResumesOncePluggedInAgain) {
     ASSERT_TRUE(plugAndMake());
-    std::chrono::microseconds longest{};
-    for (int round = 0; round < 5; ++round) {
+    const char* text = std::getenv("SKINCAL_UNPLUGS");
+    const int unplugs = text ? std::atoi(text) : 50;
+    Random chance(1, "unplugs");
+    std::chrono::microseconds slowestNotice{};
+    std::chrono::microseconds slowestReturn{};
+    std::optional<std::uint64_t> last;
+    auto plugged = camera_->now();
+    for (int round = 0; round <= unplugs; ++round) {
         camera_->start();
-        ASSERT_TRUE(runFor(10)) << why_.toStdString();
+        ASSERT_TRUE(runFor(1)) << round << why_.toStdString();
+        slowestReturn = std::max(slowestReturn, camera_->now() - plugged);
+        ASSERT_TRUE(runFor(static_cast<std::size_t>(12 * chance.uniform()))) << round << why_.toStdString();
+        for (const CameraFrame& frame : frames_) {
+            EXPECT_TRUE(!last || frame.sequence > *last) << round;
+            last = frame.sequence;
+        }
+        frames_.clear();
+        if (round == unplugs)
+            break;
         const auto pulled = camera_->now();
         device_.unplug();
-        ASSERT_TRUE(hearsTheEnd());
-        longest = std::max(longest, camera_->now() - pulled);
+        ASSERT_TRUE(hearsTheEnd()) << round;
+        slowestNotice = std::max(slowestNotice, camera_->now() - pulled);
         EXPECT_EQ(camera_->failure()->trouble, CameraTrouble::Unplugged);
         EXPECT_FALSE(camera_->isRunning());
         heard_.clear();
         const QSignalSpy returned(camera_.get(), &FrameSource::returned);
+        plugged = camera_->now();
         device_.plug();
-        ASSERT_TRUE(waitFor([&] { return !returned.empty(); }));
+        ASSERT_TRUE(waitFor([&] { return !returned.empty(); })) << round;
     }
-    EXPECT_LT(longest, std::chrono::seconds(1));
-    RecordProperty("longest_us", static_cast<int>(longest.count()));
-    camera_->start();
-    ASSERT_TRUE(runFor(10));
-    for (std::size_t k = 1; k < frames_.size(); ++k)
-        EXPECT_GT(frames_[k].sequence, frames_[k - 1].sequence);
+    EXPECT_LT(slowestNotice, std::chrono::seconds(1));
+    EXPECT_LT(slowestReturn, std::chrono::seconds(5));
+    std::cout << unplugs << " unplugs: noticed within " << 1e-6 * static_cast<double>(slowestNotice.count())
+              << " s, a picture within " << 1e-6 * static_cast<double>(slowestReturn.count()) << " s of being back\n";
 }
 
 TEST_F(Webcam, ThatGivesNoMorePicturesFails) {

@@ -138,6 +138,21 @@ TEST(Explore, CellsThatComeBackAreNoticedAndFoundAgain) {
     }
 }
 
+TEST(Explore, NumbersAreVoidWhereTheFirstCellBootsMeanwhile) {
+    const Skin skin = gridSkin(5, 5);
+    VirtualLine line(skin, skin.hostLinks.front(), {}, 3);
+    line.client.open(line.network.now());
+    ASSERT_TRUE(line.runUntil([&] { return line.notes.opened.has_value(); }, 2s));
+    line.client.explore(line.network.now());
+    ASSERT_TRUE(line.runUntil([&] { return line.notes.found > 0; }, 10s));
+    line.network.restart(0);
+    line.runFor(20s);
+    EXPECT_GT(line.notes.restarts, 0);
+    EXPECT_FALSE(line.notes.network) << "an exploration has ended that nobody could answer";
+    EXPECT_EQ(line.client.cells(), 0U);
+    EXPECT_TRUE(line.explore());
+}
+
 TEST(Explore, MayBeAskedForAgainAndAgain) {
     const Skin skin = gridSkin(5, 5);
     VirtualLine line(skin, skin.hostLinks.front(), {}, 3);

@@ -38,7 +38,7 @@ RoomLight::RoomLight(const World& world, std::size_t view, std::size_t frames)
         lamp_ = lampLight(camera);
     Random random(seed_, "light of the room");
     darker_ = random.index(std::max<std::size_t>(1, frames / 2));
-    lighter_ = darker_ + 1 + random.index(std::max<std::size_t>(1, frames / 2));
+    lighter_ = darker_ + 1 + random.index(std::max<std::size_t>(2, frames / 2) - 1);
     if (options_.screen > 0) {
         const cv::Size size(camera.width / 4, camera.height / 4);
         screen_ = {cv::Point(static_cast<int>(random.index(static_cast<std::size_t>(camera.width - size.width))),

@@ -281,6 +281,8 @@ ScanScore scoreScan(const ScanCase& what, std::uint64_t seed, const RunContext& 
     const auto view = what.method == ScanMethod::PaperSingle ? detectPaper("view", modules, frames, load, {}, context)
                                                              : decodeView("view", modules, frames, load, {}, context);
     ScanScore result;
+    if (!view && !view.error().cancelled)
+        throw std::logic_error("a scan of the study can't be decoded: " + view.error().message);
     if (!view)
         return result;
     result.seconds = std::chrono::duration<double>(Clock::now() - start).count() - painting;
@@ -310,7 +312,6 @@ std::vector<ScanCase> allScanCases() {
             cases.push_back({Disturbance::None, 0, modules, distance, ScanMethod::Coded});
     }
     for (const Named& entry : disturbances()) {
-        // What ten thousand modules in one picture are is crowded anyway.
         if (entry.disturbance == Disturbance::None || entry.disturbance == Disturbance::Crowding)
             continue;
         for (const std::size_t modules : {7, 1000})

@@ -28,7 +28,7 @@ enum class Disturbance {
 };
 [[nodiscard]] std::string_view name(Disturbance disturbance);
 [[nodiscard]] std::optional<Disturbance> findDisturbance(std::string_view name);
-/// Strengths that make a curve of it, from nothing to more than is asked for.
+/// Strengths that make a curve of it, up to more than any scan can bear.
 [[nodiscard]] const std::vector<double>& strengthsOf(Disturbance disturbance);
 
 enum class ScanMethod {
@@ -81,7 +81,7 @@ struct ScanStudyOptions {
 };
 
 /// Every disturbance at each of its strengths by each method with 55 modules; coded scans of the sizes and at the
-/// distances that the project promises, and again with every disturbance at its strongest.
+/// distances that the project promises, and again with every disturbance half-way up its curve.
 [[nodiscard]] std::vector<ScanCase> allScanCases();
 
 struct ScanStudyRow {

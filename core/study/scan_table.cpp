@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "core/study/scan_study.h"
 
@@ -28,9 +28,10 @@ std::string scanTable(const ScanStudy& study) {
     ScanScore coded;
     for (const ScanStudyRow& row : study.rows) {
         const ScanCase& what = row.what;
-        text += line(fmt::format("{} | {} | {} | {} | {} | {}", name(what.disturbance), what.strength, what.modules,
-                                 what.distance, name(what.method), row.score.frames / row.score.views),
-                     row.score);
+        text += line(
+            fmt::format("{} | {} | {} | {} | {} | {}", name(what.disturbance), what.strength, what.modules,
+                        what.distance, name(what.method), row.score.frames / std::max<std::size_t>(1, row.score.views)),
+            row.score);
         if (what.method == ScanMethod::Coded)
             coded.add(row.score);
     }

@@ -29,6 +29,9 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
             cv::Rect(0, 0, picture.width, picture.height)),
       filter_(std::move(filter)),
       lit_(codebook.planes(), 0) {
+    if (filter_.used.size() != codebook.planes() || filter_.gains.size() != codebook.planes() ||
+        filter_.around.size() != static_cast<Eigen::Index>(codebook.planes()))
+        throw std::logic_error("AmplitudeMap: the filter does not belong to this codebook");
     const Ambient ambient = ambientOf(filter_.around, filter_.gains, filter_.sigma);
     Eigen::MatrixXd weights;
     while (weights.size() == 0) {
@@ -39,12 +42,12 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
             filter_.words.pop_back();
     }
     weights_ = weights.row(0).cast<float>();
-    space_ = explainedSpace(codebook, filter_.words, filter_.used, ambient).cast<float>();
     for (const std::size_t plane : codebook.lit[filter_.words.front()])
         lit_[plane] = 1;
     const Image zero = Image::Zero(rect_.height, rect_.width);
     value_ = variance_ = clippedLit_ = clippedDark_ = zero;
     if (filter_.clipped) {
+        space_ = explainedSpace(codebook, filter_.words, filter_.used, ambient).cast<float>();
         squares_ = noise_ = zero;
         moments_.assign(static_cast<std::size_t>(space_.cols()), zero);
     }

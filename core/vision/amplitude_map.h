@@ -22,7 +22,7 @@ struct LightFilter {
     std::vector<std::uint8_t> used;   ///< per plane, 0 where it was disturbed
     Eigen::VectorXf around;           ///< per plane, level of the surroundings (SpotBrightness::around)
     std::span<const double> gains{};  ///< per plane, of the exposure
-    double sigma = 1;                 ///< of a pixel, about
+    double sigma = 1;                 ///< of the spot's brightness, for how much it may follow its surroundings
     bool shared = false;              ///< the second word is another LED's in the same spot
     bool clipped = false;             ///< whether strayShare() will be asked for: it costs as much as all the rest
 };
@@ -38,8 +38,8 @@ class AmplitudeMap {
   public:
     /// Throws std::logic_error where the first word can't be told from drift and surroundings over the used planes;
     /// those of a Matched series can.
-    /// A clipped pixel bounds the light from below where it is clipped in every plane in which the module shines and in
-    /// no other, and no other LED is in the spot; else nothing is known of it.
+    /// A clipped pixel bounds the light from below where it is clipped in no plane in which the module is dark, and,
+    /// with other LEDs near but none in the spot, in every one in which it shines; else nothing is known of it.
     AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size picture, const Codebook& codebook, LightFilter filter);
 
     void add(const FramePixels& frame, std::size_t plane, int channel, const ImageNoise& noise);

@@ -60,15 +60,15 @@ bool SeriesFit::believable(const Explanation& e) const {
            e.explained >= (two ? options_.minExplainedByTwo : options_.minExplained);
 }
 
-double SeriesFit::costOfDarkness(bool withStep) const {
+double SeriesFit::costOfDarkness(const std::vector<std::uint8_t>& used) const {
     double least = explain({}).cost;
-    if (!withStep)
-        return least;
     Rows rows = base_;
     const std::vector<std::uint8_t> all(codebook_.planes(), 1);
-    for (Eigen::Index k = rows.rows() - 1; k > 0; --k) {
-        rows(k, baseColumns_) = 1;
-        least = std::min(least, options_.outlier * options_.outlier + refine(rows, baseColumns_ + 1, {}, all).cost);
+    for (std::size_t k = used.size(); k-- > 1;) {
+        rows(static_cast<Eigen::Index>(k), baseColumns_) = 1;
+        // A step that a word can be taken for lies where the word had to be helped.
+        if (used[k] != used[k - 1])
+            least = std::min(least, options_.outlier * options_.outlier + refine(rows, baseColumns_ + 1, {}, all).cost);
     }
     return least;
 }
@@ -108,33 +108,43 @@ Eigen::VectorXd SeriesFit::residualsFromLevels(std::size_t word) const {
     return residuals;
 }
 
-/// The cheapest division of the planes into used and disturbed ones (Viterbi), and its cost.
+/// The cheapest division of the planes into used and disturbed ones (Viterbi), and its cost. A plane is used, the first
+/// of a run of disturbed ones, the second, or a later one.
 double SeriesFit::divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used) const {
+    constexpr std::uint8_t kUsed = 0;
+    constexpr std::uint8_t kFirst = 1;
+    constexpr std::uint8_t kSecond = 2;
+    constexpr std::uint8_t kLater = 3;
+    constexpr double kNever = std::numeric_limits<double>::infinity();
     const double enter = options_.outlier * options_.outlier;
     const double stay = options_.hiddenCost * options_.hiddenCost;
-    double good = 0;
-    double bad = enter;
-    std::vector<std::uint8_t> from(used.size());  // bit 0: a used plane after a disturbed one; bit 1: run goes on
+    std::array<double, 4> cost{0, kNever, kNever, kNever};
+    std::vector<std::array<std::uint8_t, 4>> from(used.size());
+    const auto cheapest = [&] {
+        return static_cast<std::uint8_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+    };
     for (std::size_t k = 0; k < used.size(); ++k) {
         const double misfit = std::pow(residuals[static_cast<Eigen::Index>(k)] / sigma_, 2);
-        const double goodBefore = good;
-        const double badBefore = k == 0 ? std::numeric_limits<double>::infinity() : bad;
-        from[k] = static_cast<std::uint8_t>((badBefore < goodBefore ? 1U : 0U) |
-                                            (badBefore + stay < goodBefore + enter ? 2U : 0U));
-        good = std::min(goodBefore, badBefore) + misfit;
-        bad = std::min(goodBefore + enter, badBefore + stay);
+        const std::uint8_t goesOn = cost[kSecond] < cost[kLater] ? kSecond : kLater;
+        from[k] = {cheapest(), kUsed, kFirst, goesOn};
+        cost = {cost.at(cheapest()) + misfit, cost[kUsed] + enter, cost[kFirst] + enter, cost.at(goesOn) + stay};
     }
-    bool isBad = bad < good;
-    for (std::size_t k = used.size(); k-- > 0;) {
-        used[k] = isBad ? 0 : 1;
-        isBad = isBad ? (from[k] & 2U) != 0 : (from[k] & 1U) != 0;
-    }
-    return std::min(good, bad);
+    std::uint8_t state = cheapest();
+    const double least = cost.at(state);
+    for (std::size_t k = used.size(); k-- > 0; state = from[k].at(state))
+        used[k] = state == kUsed ? 1 : 0;
+    return least;
+}
+
+double SeriesFit::costOfNothing() const {
+    const auto planes = static_cast<double>(codebook_.planes());
+    return std::min(planes, 2.0) * options_.outlier * options_.outlier +
+           std::max(0.0, planes - 2) * options_.hiddenCost * options_.hiddenCost;
 }
 
 Explanation SeriesFit::refine(Rows rows, Eigen::Index columns, const std::vector<std::size_t>& words,
                               std::vector<std::uint8_t> used) const {
-    // No heap: this is done some ten times per spot.
+    // Small enough for the stack: this is done some ten times per spot.
     using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostColumns, kMostColumns>;
     using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostColumns, 1>;
     Explanation e;
@@ -163,8 +173,12 @@ Explanation SeriesFit::refine(Rows rows, Eigen::Index columns, const std::vector
             N(codebook_.drift.cols(), codebook_.drift.cols()) += ridge;
         const Eigen::LDLT<Square, Eigen::Lower> factor(N);
         // The drift columns are normalised, so small numbers here mean dependence, not scale.
-        if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() < 1e-3)
+        if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() < 1e-3) {
+            // So few planes are left that nothing is known: as if all of them were disturbed.
+            if (count == 0)
+                e.cost = costOfNothing();
             return e;
+        }
         const Column solution = factor.solve(moment);
         residuals.noalias() = y_ - rows.leftCols(columns) * solution;
         if (ambient_.light.size() > 0)
@@ -175,6 +189,7 @@ Explanation SeriesFit::refine(Rows rows, Eigen::Index columns, const std::vector
         if (!settled && iteration < options_.maxIterations)
             continue;
         e.amplitudes = solution.tail(count);
+        e.drift = solution.head(codebook_.drift.cols());
         if ((e.amplitudes.array() <= 0).any())
             return e;
         const Square inverse = factor.solve(Square::Identity(columns, columns));

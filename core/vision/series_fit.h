@@ -13,6 +13,7 @@ namespace skincal {
 struct Explanation {
     std::vector<std::size_t> words;
     Eigen::VectorXd amplitudes;
+    Eigen::VectorXd drift;                                  ///< of the columns of Codebook::drift
     double ambient = 0;                                     ///< share of what the surroundings do
     std::vector<std::uint8_t> used;                         ///< per plane, 0 where it is taken for disturbed
     double cost = std::numeric_limits<double>::infinity();  ///< -2 log likelihood
@@ -36,9 +37,10 @@ class SeriesFit {
 
     /// @param words  none, one or two
     [[nodiscard]] Explanation explain(const std::vector<std::size_t>& words) const;
-    /// Cost of no LED at all, only drift, ambient and disturbances; and, where asked for, of a single step, as a knock
-    /// of the camera or somebody who stays makes one, which costs as much as a disturbance.
-    [[nodiscard]] double costOfDarkness(bool withStep) const;
+    /// Cost of no LED at all, only drift, ambient and disturbances; or of a single step besides, as a knock of the
+    /// camera or somebody who stays makes one, which costs as much as a disturbance.
+    /// @param used  of the best explanation: steps are tried where it begins or ends to leave planes out
+    [[nodiscard]] double costOfDarkness(const std::vector<std::uint8_t>& used) const;
     [[nodiscard]] bool believable(const Explanation& e) const;
 
   private:
@@ -47,6 +49,7 @@ class SeriesFit {
 
     [[nodiscard]] Explanation refine(Rows rows, Eigen::Index columns, const std::vector<std::size_t>& words,
                                      std::vector<std::uint8_t> used) const;
+    [[nodiscard]] double costOfNothing() const;
     [[nodiscard]] double divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used) const;
     [[nodiscard]] Eigen::VectorXd residualsFromLevels(std::size_t word) const;
 

@@ -11,43 +11,79 @@ namespace {
 
 // Fixed point keeps the smoothing in 16 bits, where it is twice as fast as in floats, without losing the noise.
 constexpr double kFixedPoint = 16;
+// Jumps are looked for at half the size, which costs a quarter.
+constexpr int kShrink = 2;
+// Sums of absolute differences of that many pictures fit into 16 bits.
+constexpr int kMostSummed = 256;
 
-// Of every fourth row and column, which is plenty for a spread.
+int oddHalf(int size_px) {
+    return size_px / kShrink | 1;
+}
+
+// Of every second row and column, which is plenty for a spread.
 double medianOf(const cv::Mat& map) {
     std::vector<double> values;
-    values.reserve(map.total() / 16 + 1);
-    for (int y = 0; y < map.rows; y += 4) {
-        for (int x = 0; x < map.cols; x += 4)
+    values.reserve(map.total() / 4 + 1);
+    for (int y = 0; y < map.rows; y += 2) {
+        for (int x = 0; x < map.cols; x += 2)
             values.push_back(static_cast<double>(map.at<float>(y, x)));
     }
     return median(std::move(values));
 }
 
-// Local maxima that rise above their surroundings in a map of changes (16-bit fixed point).
-void appendMaxima(const cv::Mat& map, const SpotCandidateOptions& options, std::vector<SpotCandidate>& found) {
-    cv::Mat change;
-    map.convertTo(change, CV_32F, 1 / kFixedPoint);
+// Which of two pixels of the picture: the one on the side of the brighter neighbour.
+int fullSize(int at, int size, float before, float after) {
+    return std::min(kShrink * at + (after > before ? 1 : 0), kShrink * size - 1);
+}
+
+SpotCandidate toPicture(const cv::Mat& map, const SpotCandidate& spot) {
+    const auto value = [&](int x, int y) {
+        return x < 0 || y < 0 || x >= map.cols || y >= map.rows ? 0.0F : map.at<float>(y, x);
+    };
+    return {fullSize(spot.x, map.cols, value(spot.x - 1, spot.y), value(spot.x + 1, spot.y)),
+            fullSize(spot.y, map.rows, value(spot.x, spot.y - 1), value(spot.x, spot.y + 1)), spot.contrast};
+}
+
+// Median of the surroundings, of half as many pixels where the map is as large as the picture.
+cv::Mat surroundingsOf(const cv::Mat& change, bool isHalf, int size_px) {
+    cv::Mat small = change;
+    if (!isHalf)
+        cv::resize(change, small, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
+    small.convertTo(small, CV_8U);
+    cv::medianBlur(small, small, oddHalf(size_px));
+    if (!isHalf)
+        cv::resize(small, small, change.size(), 0, 0, cv::INTER_LINEAR);
+    small.convertTo(small, CV_32F);
+    return small;
+}
+
+// Local maxima, in the picture, that rise above their surroundings in a map of changes (grey levels), strongest first.
+std::vector<SpotCandidate> maximaOf(const cv::Mat& change, bool isHalf, const SpotCandidateOptions& options) {
     // The median of the surroundings is what a lamp does to them; the spot itself hardly counts in it.
-    cv::Mat surroundings;
-    map.convertTo(surroundings, CV_8U, 1 / kFixedPoint);
-    cv::medianBlur(surroundings, surroundings, options.surroundings_px);
-    surroundings.convertTo(surroundings, CV_32F);
-    const cv::Mat contrast = change - surroundings;
+    const cv::Mat contrast = change - surroundingsOf(change, isHalf, options.surroundings_px);
     const double middle = medianOf(contrast);
     const double spread = 1.4826 * medianOf(cv::abs(contrast - middle));
     const double threshold = std::max(options.minContrast, middle + options.noiseFactor * spread);
 
     cv::Mat highest;
-    cv::dilate(change, highest, cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(5, 5)));
+    const cv::Mat around = isHalf ? cv::getStructuringElement(cv::MORPH_RECT, cv::Size(3, 3))
+                                  : cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(5, 5));
+    cv::dilate(change, highest, around);
+    std::vector<SpotCandidate> found;
     for (int y = 0; y < change.rows; ++y) {
         const auto* value = contrast.ptr<float>(y);
         const auto* here = change.ptr<float>(y);
         const auto* top = highest.ptr<float>(y);
         for (int x = 0; x < change.cols; ++x) {
-            if (static_cast<double>(value[x]) > threshold && here[x] >= top[x])
-                found.push_back({x, y, static_cast<double>(value[x])});
+            if (static_cast<double>(value[x]) <= threshold || here[x] < top[x])
+                continue;
+            const SpotCandidate spot{x, y, static_cast<double>(value[x])};
+            found.push_back(isHalf ? toPicture(change, spot) : spot);
         }
     }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const SpotCandidate& a, const SpotCandidate& b) { return a.contrast > b.contrast; });
+    return found;
 }
 
 }  // namespace
@@ -64,28 +100,41 @@ SpotFinder::SpotFinder(const SpotCandidateOptions& options) : options_(options) 
 
 void SpotFinder::add(const FramePixels& frame, bool coloured) {
     const std::size_t channels = coloured ? 3 : 1;
-    const int reach = 2 * static_cast<int>(std::ceil(1.7 * options_.smoothing_px)) + 1;
+    const double smoothing = options_.smoothing_px / kShrink;
+    const int reach = 2 * static_cast<int>(std::ceil(1.7 * smoothing)) + 1;
+    const int surroundings = oddHalf(options_.surroundings_px);
+    const cv::Size size(std::max(1, frame.size().width / kShrink), std::max(1, frame.size().height / kShrink));
     const bool first = last_.empty();
     if (first) {
         last_.resize(channels);
         lastSmooth_.resize(channels);
         lastStep_.resize(channels);
-        jump_ = cv::Mat::zeros(frame.size(), CV_16S);
-        flash_ = cv::Mat::zeros(frame.size(), CV_16S);
+        sum_ = cv::Mat::zeros(frame.size(), CV_16U);
+        jump_ = cv::Mat::zeros(size, CV_16S);
+        flash_ = cv::Mat::zeros(size, CV_16S);
     }
+    cv::Mat small;
     cv::Mat smooth;
     cv::Mat local;
     cv::Mat step;
     cv::Mat back;
     for (std::size_t i = 0; i < channels; ++i) {
         const cv::Mat plane = frame.plane(coloured ? static_cast<int>(i) : -1);
-        plane.convertTo(smooth, CV_16S, kFixedPoint);
-        cv::GaussianBlur(smooth, smooth, cv::Size(reach, reach), options_.smoothing_px);
+        // Of an odd row or column at the end nothing is seen; means of four pixels are quickly had.
+        const cv::Rect even(0, 0, kShrink * size.width, kShrink * size.height);
+        cv::resize((even & cv::Rect({}, plane.size())) == even ? plane(even) : plane, small, size, 0, 0,
+                   cv::INTER_AREA);
+        small.convertTo(smooth, CV_16S, kFixedPoint);
+        cv::GaussianBlur(smooth, smooth, cv::Size(reach, reach), smoothing);
         // A lamp that flickers in step with the frames can cancel an LED's jump: compare what stands out locally.
-        cv::blur(smooth, local, cv::Size(options_.surroundings_px, options_.surroundings_px));
+        cv::blur(smooth, local, cv::Size(surroundings, surroundings));
         cv::subtract(smooth, local, smooth);
         if (!first) {
             noise_.add(plane, last_[i]);
+            if (summed_++ < kMostSummed) {
+                cv::absdiff(plane, last_[i], small);
+                cv::add(sum_, small, sum_, cv::noArray(), CV_16U);
+            }
             cv::subtract(smooth, lastSmooth_[i], step);
             cv::max(jump_, cv::abs(step), jump_);
             if (!lastStep_[i].empty()) {
@@ -107,24 +156,39 @@ std::vector<SpotCandidate> SpotFinder::candidates(std::size_t most) const {
     if (jump_.empty())
         return {};
     std::vector<SpotCandidate> found;
-    appendMaxima(jump_, options_, found);
-    appendMaxima(flash_, options_, found);
-    std::stable_sort(found.begin(), found.end(),
-                     [](const SpotCandidate& a, const SpotCandidate& b) { return a.contrast > b.contrast; });
+    const auto append = [&](const cv::Mat& change, bool isHalf) {
+        const std::vector<SpotCandidate> more = maximaOf(change, isHalf, options_);
+        found.insert(found.end(), more.begin(), more.end());
+    };
+    cv::Mat change;
+    if (summed_ > 0 && summed_ <= kMostSummed) {
+        // What blinks changes in about half of the steps.
+        sum_.convertTo(change, CV_32F, 2.0 / summed_);
+        // The mean over all steps has little noise left: spots that nearly touch must stay apart.
+        cv::GaussianBlur(change, change, cv::Size(), 0.5 * options_.smoothing_px);
+        append(change, false);
+    }
+    jump_.convertTo(change, CV_32F, 1 / kFixedPoint);
+    append(change, true);
+    flash_.convertTo(change, CV_32F, 1 / kFixedPoint);
+    append(change, true);
 
     // A plateau (a clipped spot) has many equal maxima: keep one of each neighbourhood.
-    cv::Mat taken = cv::Mat::zeros(jump_.size(), CV_8U);
+    cv::Mat taken = cv::Mat::zeros(sum_.size(), CV_8U);
+    const cv::Rect inside({}, taken.size());
     const int reach = static_cast<int>(std::ceil(options_.minDistance_px)) - 1;
     std::vector<SpotCandidate> kept;
     for (const SpotCandidate& candidate : found) {
         if (kept.size() == most)
             break;
-        if (taken.at<std::uint8_t>(candidate.y, candidate.x) != 0)
+        if (!inside.contains({candidate.x, candidate.y}) || taken.at<std::uint8_t>(candidate.y, candidate.x) != 0)
             continue;
         const cv::Rect around(candidate.x - reach, candidate.y - reach, 2 * reach + 1, 2 * reach + 1);
-        taken(around & cv::Rect(0, 0, jump_.cols, jump_.rows)) = 1;
+        taken(around & inside) = 1;
         kept.push_back(candidate);
     }
+    std::stable_sort(kept.begin(), kept.end(),
+                     [](const SpotCandidate& a, const SpotCandidate& b) { return a.contrast > b.contrast; });
     return kept;
 }
 

@@ -27,10 +27,12 @@ struct SpotCandidate {
     double contrast = 0;
 };
 
-/// First pass over a view: remembers for every pixel the largest jump between one frame and the next, and the largest
-/// flash (a jump that the frame after takes back), both after smoothing. Slow drift of the lighting leaves no trace in
-/// them, and an LED that shines in a single frame of thousands stands out as much as one that blinks all the time. The
-/// outline of something that moves jumps, and would hide the LEDs that it passes, but hardly flashes.
+/// First pass over a view: remembers for every pixel how much it changes from frame to frame on average, which shows
+/// LEDs that blink all the time as sharply as the picture has them; and at half the size, after smoothing, the largest
+/// jump between one frame and the next and the largest flash (a jump that the frame after takes back). Slow drift of
+/// the lighting leaves no trace in these, and an LED that shines in a single frame of thousands stands out as much as
+/// one that blinks all the time. The outline of something that moves jumps, and would hide the LEDs that it passes, but
+/// hardly flashes.
 /// The memory needed does not depend on the number of frames.
 class SpotFinder {
   public:
@@ -49,6 +51,8 @@ class SpotFinder {
     std::vector<cv::Mat> last_;        ///< 8-bit plane of the frame before, one per channel
     std::vector<cv::Mat> lastSmooth_;  ///< the same, smoothed, 16-bit, times 16
     std::vector<cv::Mat> lastStep_;    ///< from the frame before that to it, signed
+    cv::Mat sum_;                      ///< of absolute differences from frame to frame, as large as the picture
+    int summed_ = 0;                   ///< how many there were
     cv::Mat jump_;
     cv::Mat flash_;
 };

@@ -22,7 +22,6 @@ template <class Pixel>
 SpotBrightness brightness(cv::Size size, const SpotCandidate& spot, int radius, double scale, const Pixel& pixel) {
     double sum = 0;
     double weights = 0;
-    int peak = 0;
     SpotBrightness result;
     for (int dy = -kCore; dy <= kCore; ++dy) {
         const int y = spot.y + dy;
@@ -34,10 +33,8 @@ SpotBrightness brightness(cv::Size size, const SpotCandidate& spot, int radius, 
                 continue;
             const double weight =
                 kTap[static_cast<std::size_t>(std::abs(dx))] * kTap[static_cast<std::size_t>(std::abs(dy))];
-            const int here = pixel(x, y);
-            sum += weight * here;
+            sum += weight * pixel(x, y);
             weights += weight;
-            peak = std::max(peak, here);
         }
     }
     std::array<int, std::size_t{8} * kLargestRadius> edge{};
@@ -62,7 +59,6 @@ SpotBrightness brightness(cv::Size size, const SpotCandidate& spot, int radius, 
         result.around = scale * darker / static_cast<double>(half);
     }
     result.level = scale * sum / weights;
-    result.peak = scale * peak;
     result.value = result.level - result.around;
     return result;
 }
@@ -88,6 +84,18 @@ SpotBrightness spotBrightness(const FramePixels& frame, const SpotCandidate& spo
     return result;
 }
 
+bool isClippedNear(const FramePixels& frame, const SpotCandidate& spot, int radius, int channel) {
+    const cv::Rect window =
+        cv::Rect(spot.x - radius, spot.y - radius, 2 * radius + 1, 2 * radius + 1) & cv::Rect({}, frame.size());
+    for (int y = window.y; y < window.y + window.height; ++y) {
+        for (int x = window.x; x < window.x + window.width; ++x) {
+            if (frame.saturated(x, y, channel))
+                return true;
+        }
+    }
+    return false;
+}
+
 double spotBrightnessSigma(const ImageNoise& noise, double level, int radius) {
     const double sum = kTap[0] + 2 * (kTap[1] + kTap[2]);
     const double squares = kTap[0] * kTap[0] + 2 * (kTap[1] * kTap[1] + kTap[2] * kTap[2]);
@@ -101,7 +109,7 @@ SpotSeries::SpotSeries(std::size_t planes, std::size_t spots)
     : light(static_cast<Eigen::Index>(planes), static_cast<Eigen::Index>(spots)),
       around(light.rows(), light.cols()),
       level(Eigen::VectorXd::Zero(light.cols())),
-      peak(level) {}
+      clipped(spots, 0) {}
 
 void SpotSeries::read(const FramePixels& frame, std::span<const SpotCandidate> spots, int radius, std::size_t plane,
                       int channel) {
@@ -112,7 +120,9 @@ void SpotSeries::read(const FramePixels& frame, std::span<const SpotCandidate> s
             light(row, i) = static_cast<float>(read.value);
             around(row, i) = static_cast<float>(read.around);
             level[i] = std::max(level[i], read.level);
-            peak[i] = std::max(peak[i], read.peak);
+            const auto spot = static_cast<std::size_t>(i);
+            if (clipped[spot] == 0 && isClippedNear(frame, spots[spot], radius, channel))
+                clipped[spot] = 1;
         }
     });
 }
@@ -137,19 +147,43 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
             strongest.push_back(static_cast<double>(*high));
         }
     }
+    // Skirts and reflections shine with several LEDs at once, and tell nothing.
+    constexpr double kOfStrong = 0.2;
+    if (!strongest.empty()) {
+        std::vector<double> sorted = strongest;
+        std::sort(sorted.begin(), sorted.end());
+        const double least = kOfStrong * sorted[9 * (sorted.size() - 1) / 10];
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < spots.size(); ++i) {
+            if (strongest[i] < least)
+                continue;
+            spots[kept] = spots[i];
+            strongest[kept++] = strongest[i];
+        }
+        spots.resize(kept);
+        strongest.resize(kept);
+    }
     std::vector<std::size_t> told;
-    std::vector<double> shares(spots.size());
+    std::vector<double> shares;
     for (std::size_t k = 0; k < gains.size(); ++k) {
         if (litCount[k] < kFewest || spots.size() < kFewest)
             continue;
-        for (std::size_t i = 0; i < spots.size(); ++i)
-            shares[i] = static_cast<double>(series.light(static_cast<Eigen::Index>(k), spots[i])) / strongest[i];
+        shares.clear();
+        for (std::size_t i = 0; i < spots.size(); ++i) {
+            const auto light = static_cast<double>(series.light(static_cast<Eigen::Index>(k), spots[i]));
+            if (light > kStrong * sigma[static_cast<std::size_t>(spots[i])])
+                shares.push_back(light / strongest[i]);
+        }
+        if (shares.size() < kFewest)
+            continue;
         std::sort(shares.begin(), shares.end());
         const double top = shares[9 * (shares.size() - 1) / 10];
         const auto shining =
             std::partition_point(shares.begin(), shares.end(), [&](double s) { return s < 0.5 * top; });
         const auto count = static_cast<std::size_t>(shares.end() - shining);
-        if (top <= 0 || count < kFewest)
+        // Less than that is what stray light makes of LEDs that nobody sees.
+        constexpr double kLeastShare = 0.1;
+        if (top < kLeastShare || count < kFewest)
             continue;
         gains[k] = *(shining + static_cast<std::ptrdiff_t>(count / 2));
         told.push_back(k);

@@ -18,6 +18,22 @@ bool contains(const Words& words, std::size_t word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// Off its mean over the used planes, zero in the others.
+Eigen::VectorXd offMean(const Eigen::VectorXd& y, const std::vector<std::uint8_t>& used) {
+    double sum = 0;
+    double count = 0;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        sum += used[k] != 0 ? y[static_cast<Eigen::Index>(k)] : 0;
+        count += used[k] != 0 ? 1 : 0;
+    }
+    Eigen::VectorXd off = Eigen::VectorXd::Zero(y.size());
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        if (used[k] != 0)
+            off[static_cast<Eigen::Index>(k)] = y[static_cast<Eigen::Index>(k)] - sum / count;
+    }
+    return off;
+}
+
 /// Pairs of which one at least is among the likeliest few.
 void explainPairs(const SeriesFit& fit, const Words& pool, std::vector<Explanation>& tried) {
     constexpr std::size_t kLikely = 3;
@@ -69,6 +85,21 @@ SeriesMatch WordMatcher::match(std::span<const double> series, double sigma, con
         return std::tuple(!a.significant, price(a)) < std::tuple(!b.significant, price(b));
     };
     auto best = std::min_element(tried.begin(), tried.end(), better);
+    const auto isKnown = [&](std::size_t word) {
+        return std::any_of(tried.begin(), tried.end(), [&](const Explanation& e) { return e.words == Words{word}; });
+    };
+    // What hides an LED for long also hides its word from a ranking over all planes: once more over those that remain.
+    if (best->significant && best->disturbed > 0) {
+        const std::vector<std::uint8_t> used = best->used;
+        const Ambient there = centred(ambient, used);
+        Eigen::VectorXd rest = y;
+        rest -= there.light.size() > 0 ? Eigen::VectorXd(best->ambient * there.light) : Eigen::VectorXd::Zero(y.size());
+        for (const RankedWord& word : ranking_.best(offMean(rest, used), shortlist)) {
+            if (!isKnown(word.word))
+                tried.push_back(fit.explain({word.word}));
+        }
+        best = std::min_element(tried.begin(), tried.end(), better);
+    }
     if (best->disturbed > 0 || !fit.believable(*best)) {
         // Two LEDs in one spot: the other one shows best in what the first leaves.
         Words pool;
@@ -97,8 +128,9 @@ SeriesMatch WordMatcher::match(std::span<const double> series, double sigma, con
         match.amplitudes.push_back(best->amplitudes[static_cast<Eigen::Index>(j)]);
     }
     match.used = best->used;
+    match.drift = best->drift;
     match.ambient = best->ambient;
-    match.margin = fit.costOfDarkness(best->disturbed > 0) - best->cost;
+    match.margin = fit.costOfDarkness(best->used) - price(*best);
     for (const Explanation& other : tried) {
         // A pair that contains the best word says the same about that word.
         const bool same = std::all_of(best->words.begin(), best->words.end(),

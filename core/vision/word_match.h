@@ -12,7 +12,7 @@ namespace skincal {
 
 struct WordMatchOptions {
     double outlier = 5;               ///< a plane that is off by more standard deviations than this counts as disturbed
-    double hiddenCost = 2.5;          ///< the same where the plane before is disturbed, too: what hides an LED stays
+    double hiddenCost = 2;            ///< the same where the two before it are disturbed, too: what hides an LED stays
     double maxHidden = 0.5;           ///< share of the planes that may be disturbed in a single run …
     double maxDisturbed = 0.2;        ///< … and where there are several runs
     double minSignificance = 6;       ///< amplitude over its standard deviation
@@ -39,6 +39,7 @@ struct SeriesMatch {
     SeriesVerdict verdict = SeriesVerdict::Dark;
     std::vector<std::size_t> words;  ///< module positions, brightest first, at most 2
     std::vector<double> amplitudes;  ///< grey levels, same order
+    Eigen::VectorXd drift{};         ///< of the columns of Codebook::drift
     double ambient = 0;              ///< share of what the surroundings do
     std::vector<std::uint8_t> used;  ///< per plane, 0 where it was disturbed
     double margin = 0;               ///< lead over the runner-up, -2 log likelihood
@@ -47,7 +48,7 @@ struct SeriesMatch {
 
 /// Whose LED is it? Maximum likelihood over modules u (and, where no single word will do, pairs) of
 ///   y_k = intercept + slope t_k + rho a_k + sum_u c_u w_u[k] + noise,   c_u > 0, rho ~ N(0, ambient prior)
-/// but for disturbed planes, of which nothing is believed: the first of a run costs `outlier`^2, each one more
+/// but for disturbed planes, of which nothing is believed: the first two of a run cost `outlier`^2, each one more
 /// `hiddenCost`^2 (the cheapest division into runs, by dynamic programming), so that a flash costs a plane, and who
 /// walks past a run of them, but not the decision. The likelihoods of the best and the second-best explanation (no
 /// light at all included) must differ by `minMargin`. One-at-a-time words have a single lit plane and hence no

@@ -120,6 +120,16 @@ void DetectionTable::select(ModuleId module) {
     }
 }
 
+/// The word sent and the word received, as far as a line holds them.
+QString DetectionTable::wordsBelowEachOther(const WordReading& reading) {
+    constexpr int kLongest = 64;
+    const QString sent = QString::fromStdString(reading.sent);
+    const QString received = QString::fromStdString(reading.received);
+    if (sent.size() > kLongest)
+        return {};
+    return QLatin1String("\n") + tr("sent %1, seen %2").arg(sent, received);
+}
+
 void DetectionTable::showEvidence() {
     for (QLabel* crop : crops_)
         crop->clear();
@@ -154,6 +164,13 @@ void DetectionTable::showEvidence() {
                        .arg(detection.pixel->y(), 0, 'f', 2);
     if (!detection.reason.isEmpty())
         text += tr("; %1").arg(detection.reason);
+    if (detection.reading) {
+        text += QLatin1String("\n") +
+                tr("Light %1 times its noise; ahead of whatever else it could be by %2 (20 is enough)")
+                    .arg(detection.reading->snr, 0, 'f', 0)
+                    .arg(detection.reading->margin, 0, 'f', 0) +
+                wordsBelowEachOther(*detection.reading);
+    }
     evidence_->setText(text);
 }
 

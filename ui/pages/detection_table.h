@@ -13,6 +13,8 @@ class QTableView;
 
 namespace skincal {
 
+struct WordReading;
+
 class ScanPresenter;
 class Workbench;
 
@@ -33,6 +35,7 @@ class DetectionTable : public QWidget {
 
   private:
     void showEvidence();
+    [[nodiscard]] static QString wordsBelowEachOther(const WordReading& reading);
 
     std::vector<ModuleId> kept_;  ///< selected, while the table is filled anew
     Workbench& workbench_;

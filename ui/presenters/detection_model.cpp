@@ -17,8 +17,13 @@ State stateOf(DetectionVerdict verdict) {
 std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Decisions& decisions) {
     std::map<ModuleId, DetectionRow> rows;
     std::set<ModuleId> several;  // spots to choose from
-    for (const LedDetection& found : view.decoded.found)
-        rows[found.module] = {found.module, State::Used, found.pixel, found.sigma_px, std::nullopt, false, {}};
+    const ViewDetections& decoded = view.decoded;
+    for (std::size_t i = 0; i < decoded.found.size(); ++i) {
+        const LedDetection& found = decoded.found[i];
+        rows[found.module] = {found.module, State::Used, found.pixel, found.sigma_px, std::nullopt, false, {}, {}};
+        if (i < decoded.readings.size())
+            rows[found.module].reading = decoded.readings[i];
+    }
     for (const Undetected& undetected : view.decoded.undetected) {
         DetectionRow& row = rows[undetected.module];
         row.module = undetected.module;

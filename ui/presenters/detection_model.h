@@ -16,6 +16,7 @@ struct DetectionRow {
     std::optional<double> residual_px;  ///< length, against the newest body
     bool isOperatorsWord = false;
     QString reason;
+    std::optional<WordReading> reading;  ///< of what was found in pictures
 };
 
 /// All modules in a view: sortable by every column, numbers as numbers (Qt::UserRole).

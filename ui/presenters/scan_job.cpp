@@ -46,6 +46,8 @@ tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
     }
     if (dark.size() >= 2)
         result.moved_px = shiftBetween((*pictures)[dark.front()], (*pictures)[dark.back()]);
+    // LEDs tell smaller motions than the scene, and where the scene is dark.
+    result.moved_px = std::max(result.moved_px, decoded->moved_px.value_or(0));
     result.view = {{}, std::move(frames), std::move(pictures), *std::move(decoded)};
     return result;
 }

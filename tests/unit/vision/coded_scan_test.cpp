@@ -95,13 +95,27 @@ TEST(CodedScan, BothEndsAreAlikeAndEveryLedShinesInHalf) {
     }
 }
 
-TEST(CodedScan, NothingHidesABitThatHidesHalfTheScan) {
+TEST(CodedScan, WhatHidesAsManyPicturesAsThereAreBitsHidesNoWord) {
     const LitSets scan = codedScan(modulesNamed(100), 4);
     const std::size_t bits = scan.size() / 2 - 2;
-    for (std::size_t bit = 0; bit < bits; ++bit) {
-        const auto& shown = scan[2 + bit];
-        const auto& complement = scan[2 + bits + bit];
-        EXPECT_EQ(shown.size() + complement.size(), 100U);
+    for (std::size_t first = 0; first + bits <= scan.size(); ++first) {
+        std::map<ModuleId, std::string> words;
+        for (std::size_t k = 0; k < scan.size(); ++k) {
+            if (k >= first && k < first + bits)
+                continue;
+            for (const ModuleId module : modulesNamed(100))
+                words[module] += '0';
+            for (const LitModule& one : scan[k])
+                words[one.module].back() = '1';
+        }
+        for (auto a = words.begin(); a != words.end(); ++a) {
+            for (auto b = std::next(a); b != words.end(); ++b) {
+                int distance = 0;
+                for (std::size_t k = 0; k < a->second.size(); ++k)
+                    distance += a->second[k] != b->second[k] ? 1 : 0;
+                EXPECT_GE(distance, 3) << "hidden from picture " << first;
+            }
+        }
     }
 }
 

@@ -1,0 +1,97 @@
+#include "core/vision/matched_spot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/vision/parallel.h"
+
+namespace skincal {
+namespace {
+
+/// What a spot shows beyond drift, ambient and the words but one.
+Eigen::VectorXd lightOf(const SpotScan& scan, const MatchedSpot& match, std::size_t j) {
+    Eigen::VectorXd light =
+        scan.levelled(match.candidate) - scan.codebook.drift * match.series.drift -
+        match.series.ambient * centred(scan.ambientOfSpot(match.candidate), match.series.used).light;
+    for (std::size_t other = 0; other < match.series.words.size(); ++other) {
+        if (other == j)
+            continue;
+        for (const std::size_t plane : scan.codebook.lit[match.series.words[other]])
+            light[static_cast<Eigen::Index>(plane)] -= match.series.amplitudes[other];
+    }
+    return light;
+}
+
+}  // namespace
+
+std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, std::span<const SpotCandidate> candidates,
+                                                        std::span<const ModuleId> modules,
+                                                        const WordMatchOptions& options, const RunContext& context,
+                                                        Verdicts& verdicts) {
+    const WordMatcher matcher(scan.codebook, options);
+    std::vector<SeriesMatch> all(candidates.size());
+    const bool isDone = forEach(candidates.size(), context, [&](std::size_t i) {
+        const Eigen::VectorXd y = scan.levelled(i);
+        all[i] = matcher.match({y.data(), static_cast<std::size_t>(y.size())}, scan.sigma[i], scan.ambientOfSpot(i));
+    });
+    if (!isDone)
+        return std::nullopt;
+    std::vector<MatchedSpot> matches;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        SeriesMatch& match = all[i];
+        switch (match.verdict) {
+            case SeriesVerdict::Matched:
+                matches.push_back({candidates[i], i, std::move(match), {}, {}});
+                break;
+            case SeriesVerdict::Ambiguous:
+                for (const std::size_t word : match.words) {
+                    verdicts.note(word, DetectionVerdict::Ambiguous,
+                                  match.runnerUp ? fmt::format("a spot fits its word no better than that of module {}",
+                                                               modules[*match.runnerUp].value)
+                                                 : std::string("a spot blinks its word too faintly to be sure"));
+                }
+                break;
+            case SeriesVerdict::Unlike:
+                verdicts.note(match.words.front(), DetectionVerdict::NotFound,
+                              "a spot blinks somewhat like its word, but with other light in it");
+                break;
+            case SeriesVerdict::Dark:
+                break;
+        }
+    }
+    return matches;
+}
+
+bool hasMoreLight(const SpotScan& scan, const MatchedSpot& match) {
+    constexpr double kShare = 0.2;
+    const double amplitude = match.series.amplitudes[0];
+    Eigen::VectorXd more = lightOf(scan, match, 0);
+    for (const std::size_t plane : scan.codebook.lit[match.series.words[0]])
+        more[static_cast<Eigen::Index>(plane)] -= amplitude;
+    for (std::size_t k = 0; k < match.series.used.size(); ++k) {
+        if (match.series.used[k] == 0 && more[static_cast<Eigen::Index>(k)] > kShare * amplitude)
+            return true;
+    }
+    return false;
+}
+
+WordReading readingOf(const SpotScan& scan, const MatchedSpot& match, std::size_t module) {
+    const auto j = static_cast<std::size_t>(std::find(match.series.words.begin(), match.series.words.end(), module) -
+                                            match.series.words.begin());
+    const std::size_t planes = scan.codebook.planes();
+    WordReading reading;
+    reading.sent.assign(planes, '0');
+    for (const std::size_t plane : scan.codebook.lit[module])
+        reading.sent[plane] = '1';
+    const Eigen::VectorXd light = lightOf(scan, match, j);
+    for (std::size_t k = 0; k < planes; ++k) {
+        const bool isBright = light[static_cast<Eigen::Index>(k)] > 0.5 * match.series.amplitudes[j];
+        reading.received += match.series.used[k] == 0 ? '.' : isBright ? '1' : '0';
+    }
+    reading.snr = match.series.amplitudes[j] / scan.sigma[match.candidate];
+    reading.margin = match.series.margin;
+    return reading;
+}
+
+}  // namespace skincal

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "core/geometry/run_context.h"
+#include "core/vision/detection.h"
+#include "core/vision/spot_scan.h"
+#include "core/vision/verdicts.h"
+#include "core/vision/word_match.h"
+
+namespace skincal {
+
+/// Light that some words explain together, and one map and one fit per word.
+struct MatchedSpot {
+    SpotCandidate spot;
+    std::size_t candidate = 0;  ///< position in the scan's series
+    SeriesMatch series;
+    std::vector<AmplitudeMap> maps{};
+    std::vector<tl::expected<SpotFit, SpotFitError>> fits{};
+};
+
+/// The candidates whose series a word explains, or two; what else is to be said of words goes to `verdicts`. Nothing
+/// where the context asks to stop.
+[[nodiscard]] std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan,
+                                                                      std::span<const SpotCandidate> candidates,
+                                                                      std::span<const ModuleId> modules,
+                                                                      const WordMatchOptions& options,
+                                                                      const RunContext& context, Verdicts& verdicts);
+
+/// True where a disturbed plane is brighter than the first word makes it: what hides an LED makes it darker.
+[[nodiscard]] bool hasMoreLight(const SpotScan& scan, const MatchedSpot& match);
+
+/// @param module  one of those whose words match
+[[nodiscard]] WordReading readingOf(const SpotScan& scan, const MatchedSpot& match, std::size_t module);
+
+}  // namespace skincal

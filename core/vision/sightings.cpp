@@ -1,0 +1,153 @@
+#include "core/vision/sightings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "core/vision/scan_motion.h"
+
+namespace skincal {
+namespace {
+
+bool blindNear(const SpotWindow& window, const Vector2d& centre, double radius_px) {
+    for (Eigen::Index row = 0; row < window.state.rows(); ++row) {
+        for (Eigen::Index col = 0; col < window.state.cols(); ++col) {
+            const Vector2d pixel(static_cast<double>(window.x0 + col), static_cast<double>(window.y0 + row));
+            if (window.state(row, col) == PixelState::Excluded && (pixel - centre).norm() <= radius_px)
+                return true;
+        }
+    }
+    return false;
+}
+
+double whenSeen(const Codebook& codebook, const SeriesMatch& match, std::size_t module) {
+    double sum = 0;
+    double count = 0;
+    for (const std::size_t plane : codebook.lit[module]) {
+        if (match.used[plane] != 0) {
+            sum += static_cast<double>(plane);
+            count += static_cast<double>(codebook.planes());
+        }
+    }
+    return count > 0 ? sum / count : 0.5;
+}
+
+// Planes at which a spot's word begins or ends to show, where it does not show throughout.
+std::optional<std::size_t> breakOf(const std::vector<std::uint8_t>& used) {
+    constexpr std::ptrdiff_t kShortest = 3;
+    const auto first = std::find(used.begin(), used.end(), 1);
+    const auto last = std::find(used.rbegin(), used.rend(), 1);
+    if (first - used.begin() >= kShortest)
+        return static_cast<std::size_t>(first - used.begin());
+    if (last - used.rbegin() >= kShortest)
+        return static_cast<std::size_t>(used.rend() - last);
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<MatchedSpot>& matches,
+                                  const DecoderOptions& options, Verdicts& verdicts) {
+    std::vector<Sighting> sightings;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        const MatchedSpot& match = matches[i];
+        for (std::size_t j = 0; j < match.maps.size(); ++j) {
+            const std::size_t module = match.series.words[j];
+            const auto& fit = match.fits[j];
+            if (!fit) {
+                verdicts.note(module, DetectionVerdict::NotFound, std::string(name(fit.error())));
+                continue;
+            }
+            // The skirt of a neighbour blinks the neighbour's word; its centre lies elsewhere. Where two LEDs share one
+            // maximum, each may sit a little off it.
+            const bool shared = match.maps.size() > 1;
+            const double allowed = shared ? options.windowRadius - 1.0 : options.maxShift_px;
+            if ((fit->centre - Vector2d(match.spot.x, match.spot.y)).norm() > allowed) {
+                verdicts.note(module, DetectionVerdict::NotFound, "only stray light blinks its word");
+                continue;
+            }
+            // Clipping hides a second LED from the series, which then looks like a disturbance, and makes light no
+            // longer add up.
+            if (shared ? blindNear(match.maps[j].window(), fit->centre, options.maxShift_px)
+                       : fit->clipped && (hasMoreLight(scan, match) ||
+                                          match.maps[j].strayShare(fit->centre, 3.5) > options.maxStrayShare)) {
+                verdicts.note(module, DetectionVerdict::Ambiguous, "its spot is clipped and has other light in it");
+                continue;
+            }
+            sightings.push_back({module, *fit, whenSeen(scan.codebook, match.series, module), i});
+        }
+    }
+    // Brightest first; ties by place, so that the result does not depend on anything else.
+    std::sort(sightings.begin(), sightings.end(), [](const Sighting& a, const Sighting& b) {
+        return std::make_tuple(a.module, -a.fit.flux(), a.fit.centre.x(), a.fit.centre.y()) <
+               std::make_tuple(b.module, -b.fit.flux(), b.fit.centre.x(), b.fit.centre.y());
+    });
+    return sightings;
+}
+
+std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, const DecoderOptions& options) {
+    struct Spot {
+        Vector2d place;
+        Sighting best;
+    };
+    std::vector<Spot> spots;
+    const double faintest = finds.front().fit.flux() / options.reflectionRatio;
+    for (const Sighting& find : finds) {
+        const auto same = std::find_if(spots.begin(), spots.end(), [&](const Spot& spot) {
+            return (find.fit.centre - spot.place).norm() <= options.sameSpot_px;
+        });
+        if (same == spots.end() && (spots.empty() || find.fit.flux() > faintest))
+            spots.push_back({find.fit.centre, find});
+        else if (same != spots.end() && find.fit.sigma_px < same->best.fit.sigma_px)
+            same->best = find;
+    }
+    std::vector<Sighting> best;
+    for (const Spot& spot : spots)
+        best.push_back(spot.best);
+    return best;
+}
+
+Undetected undecided(const std::vector<Sighting>& spots, const DecoderOptions& options) {
+    Undetected result{{}, DetectionVerdict::Ambiguous, {}};
+    result.reason = spots.size() == 2 ? fmt::format("two spots {:.0f} px apart blink its word",
+                                                    (spots[1].fit.centre - spots[0].fit.centre).norm())
+                                      : fmt::format("{} spots blink its word", spots.size());
+    // One that is left out might be the LED itself.
+    if (spots.size() > static_cast<std::size_t>(options.maxSpots))
+        return result;
+    for (const auto& [module, fit, when, match] : spots)
+        result.spots.push_back({fit.centre, fit.sigma_px, std::min(1.0, fit.flux() / spots.front().fit.flux())});
+    return result;
+}
+
+std::optional<double> knocked_px(const std::vector<Sighting>& sightings, const std::vector<MatchedSpot>& matches) {
+    constexpr std::size_t kFewest = 3;
+    constexpr double kApart = 0.3;
+    constexpr double kAtLeast = 1.5;  // a spot's width, where nothing tells by how much it was
+    std::map<std::size_t, std::size_t> breaks;
+    std::vector<SplitSighting> split;
+    for (auto first = sightings.begin(); first != sightings.end();) {
+        const auto last =
+            std::find_if(first, sightings.end(), [&](const Sighting& other) { return other.module != first->module; });
+        const auto [early, late] =
+            std::minmax_element(first, last, [](const Sighting& a, const Sighting& b) { return a.when < b.when; });
+        if (late->when - early->when > kApart)
+            split.push_back({early->fit.centre, late->fit.centre});
+        for (; first != last; ++first) {
+            if (const auto at = breakOf(matches[first->match].series.used))
+                ++breaks[*at];
+        }
+    }
+    std::size_t alike = 0;
+    for (const auto& [plane, count] : breaks) {
+        const auto next = breaks.find(plane + 1);
+        alike = std::max(alike, count + (next != breaks.end() ? next->second : 0));
+    }
+    if (alike < kFewest || 4 * alike < sightings.size())
+        return std::nullopt;
+    return std::max(kAtLeast, ScanMotion::moved_px(split).value_or(kAtLeast));
+}
+
+}  // namespace skincal

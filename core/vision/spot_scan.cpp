@@ -1,0 +1,38 @@
+#include "core/vision/spot_scan.h"
+
+#include "core/geometry/statistics.h"
+
+namespace skincal {
+
+void SpotScan::levelExposure(int windowRadius) {
+    const auto spots = static_cast<std::size_t>(series.level.size());
+    sigma.resize(spots);
+    for (std::size_t i = 0; i < spots; ++i)
+        sigma[i] = spotBrightnessSigma(noise, series.level[static_cast<Eigen::Index>(i)], windowRadius);
+    std::vector<std::size_t> litCount(codebook.planes(), 0);
+    for (const auto& planes : codebook.lit) {
+        for (const std::size_t plane : planes)
+            ++litCount[plane];
+    }
+    gains = exposureGains(series, sigma, litCount);
+    // Where it was darker the noise counts for more.
+    std::vector<double> inverse;
+    for (const double gain : gains)
+        inverse.push_back(1 / gain);
+    const double usual = inverse.empty() ? 1 : median(std::move(inverse));
+    for (double& one : sigma)
+        one *= usual;
+}
+
+Eigen::VectorXd SpotScan::levelled(std::size_t candidate) const {
+    Eigen::VectorXd y = series.light.col(static_cast<Eigen::Index>(candidate)).cast<double>();
+    for (Eigen::Index k = 0; k < y.size(); ++k)
+        y[k] /= gains[static_cast<std::size_t>(k)];
+    return y;
+}
+
+Ambient SpotScan::ambientOfSpot(std::size_t candidate) const {
+    return ambientOf(series.around.col(static_cast<Eigen::Index>(candidate)), gains, sigma[candidate]);
+}
+
+}  // namespace skincal

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/vision/detection.h"
+
+namespace skincal {
+
+/// Why modules are not found, one reason per module.
+class Verdicts {
+  public:
+    explicit Verdicts(std::size_t modules) : reasons_(modules) {}
+
+    /// The first reason stays, but what nearly was a find says more than what never was.
+    void note(std::size_t module, DetectionVerdict verdict, std::string reason) {
+        auto& known = reasons_[module];
+        const bool better = verdict == DetectionVerdict::Ambiguous && known.verdict == DetectionVerdict::NotFound;
+        if (known.reason.empty() || better)
+            known = {{}, verdict, std::move(reason)};
+    }
+    /// Nothing says more than several finds.
+    void replace(std::size_t module, Undetected with) { reasons_[module] = std::move(with); }
+    [[nodiscard]] Undetected take(std::size_t module, ModuleId id) {
+        Undetected result = std::move(reasons_[module]);
+        result.module = id;
+        if (result.reason.empty())
+            result.reason = "no spot blinks its word";
+        return result;
+    }
+
+  private:
+    std::vector<Undetected> reasons_;
+};
+
+}  // namespace skincal

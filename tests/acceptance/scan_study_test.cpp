@@ -1,0 +1,101 @@
+#include "core/study/scan_study.h"
+
+#include <gtest/gtest.h>
+
+namespace skincal::testing {
+namespace {
+
+/// The sum over some seeds of everything that the study has of a disturbance up to a strength (or down to a spacing).
+ScanScore scoreUpTo(Disturbance disturbance, double strongest, std::size_t modules = 55,
+                    ScanMethod method = ScanMethod::Coded) {
+    ScanScore sum;
+    for (const double strength : strengthsOf(disturbance)) {
+        const bool isCrowding = disturbance == Disturbance::Crowding;
+        if (isCrowding ? strength < strongest : strength > strongest)
+            continue;
+        for (std::uint64_t seed = 1; seed <= 2; ++seed)
+            sum.add(scoreScan({disturbance, strength, modules, 0.8, method}, seed));
+    }
+    return sum;
+}
+
+struct Expectation {
+    Disturbance disturbance;
+    double strongest;
+    double found;  ///< share at least
+};
+
+class ScansIn : public ::testing::TestWithParam<Expectation> {};
+
+TEST_P(ScansIn, FindWhatIsVisibleAndNothingElse) {
+    const ScanScore score = scoreUpTo(GetParam().disturbance, GetParam().strongest);
+    EXPECT_GT(score.visible, 100U);
+    EXPECT_EQ(score.wrong, 0U);
+    EXPECT_GE(score.foundShare(), GetParam().found);
+    // Centres are as good as they say.
+    EXPECT_GT(score.rmsSigmas(), 0.7);
+    EXPECT_LT(score.rmsSigmas(), 1.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Rooms, ScansIn,
+    ::testing::Values(Expectation{Disturbance::None, 0, 0.995}, Expectation{Disturbance::Ambient, 120, 0.995},
+                      Expectation{Disturbance::Reflection, 0.3, 0.995}, Expectation{Disturbance::Screen, 250, 0.995},
+                      Expectation{Disturbance::Mains50, 50, 0.995}, Expectation{Disturbance::Mains60, 100, 0.995},
+                      Expectation{Disturbance::Sun, 0.3, 0.995}, Expectation{Disturbance::Person, 1, 0.9},
+                      Expectation{Disturbance::Exposure, 0.7, 0.995}, Expectation{Disturbance::Crowding, 8, 0.995}),
+    [](const auto& what) { return std::string(name(what.param.disturbance)); });
+
+TEST(ScanStudy, AKnockedCameraPutsNobodyElsewhere) {
+    const ScanScore score = scoreUpTo(Disturbance::Bump, 20);
+    EXPECT_EQ(score.wrong, 0U);
+    EXPECT_EQ(score.found, 0U) << "nothing is taken from a view in which it moved";
+}
+
+TEST(ScanStudy, AMirrorLeavesAChoiceThatHoldsTheLed) {
+    const ScanScore score = scoreUpTo(Disturbance::Reflection, 0.9);
+    EXPECT_EQ(score.wrong, 0U);
+    EXPECT_GE(score.found + score.choices, score.visible * 995 / 1000);
+}
+
+TEST(ScanStudy, WhatCannotBeSeenIsNotFoundElsewhere) {
+    for (const auto& [disturbance, strongest] :
+         {std::pair(Disturbance::Ambient, 300.0), std::pair(Disturbance::Sun, 2.0)})
+        EXPECT_EQ(scoreUpTo(disturbance, strongest).wrong, 0U) << name(disturbance);
+}
+
+TEST(ScanStudy, AThousandModulesInOnePicture) {
+    const ScanScore score = scoreScan({Disturbance::None, 0, 1000, 0.8, ScanMethod::Coded}, 1);
+    EXPECT_LE(score.frames, 32U);
+    EXPECT_GT(score.visible, 950U);
+    EXPECT_GE(score.foundShare(), 0.995);
+    EXPECT_EQ(score.wrong, 0U);
+}
+
+TEST(ScanStudy, CodedScansFindWhatThePapersScanLosesToAScreen) {
+    const ScanScore paper = scoreUpTo(Disturbance::Screen, 250, 7, ScanMethod::PaperSingle);
+    const ScanScore coded = scoreUpTo(Disturbance::Screen, 250, 7);
+    EXPECT_LT(paper.foundShare(), 0.5);
+    EXPECT_GE(coded.foundShare(), 0.995);
+}
+
+TEST(ScanStudy, TablesAndPlotsNameEveryCase) {
+    ScanStudyOptions options;
+    options.seeds = 1;
+    options.cases = {{Disturbance::Sun, 0.1, 7, 0.8, ScanMethod::Coded},
+                     {Disturbance::Sun, 0.3, 7, 0.8, ScanMethod::Coded},
+                     {Disturbance::Sun, 0.3, 7, 0.8, ScanMethod::PaperSingle}};
+    const ScanStudy study = runScanStudy(options);
+    ASSERT_EQ(study.rows.size(), 3U);
+    const std::string table = scanTable(study);
+    EXPECT_NE(table.find("| sun | 0.3 | 7 | 0.8 | paper |"), std::string::npos) << table;
+    const std::string plot = scanPlot(study);
+    EXPECT_EQ(plot.rfind("<svg", 0), 0U);
+    EXPECT_NE(plot.find(">sun<"), std::string::npos);
+    EXPECT_THROW((void)runScanStudy({}), std::logic_error);
+    EXPECT_EQ(findDisturbance("sun"), Disturbance::Sun);
+    EXPECT_FALSE(findDisturbance("rain"));
+}
+
+}  // namespace
+}  // namespace skincal::testing

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "core/geometry/statistics.h"
 
@@ -51,11 +52,49 @@ Explanation SeriesFit::explain(const std::vector<std::size_t>& words) const {
     return best;
 }
 
+/// A word that shines in a plane or two looks like a flash, and what disturbs one plane, or changes the surroundings
+/// as they hardly ever change, may well disturb the next.
+bool SeriesFit::mayBeDisturbance(const Explanation& e) const {
+    constexpr std::size_t kEnough = 3;
+    constexpr std::size_t kNear = 3;
+    std::vector<std::uint8_t> isCalm = e.used;
+    if (ambient_.light.size() > 0) {
+        const double* light = ambient_.light.data();
+        std::vector<double> values(light, light + ambient_.light.size());
+        const double middle = median(values);
+        for (double& value : values)
+            value = std::abs(value - middle);
+        constexpr double kSpreads = 6;
+        const double most = kSpreads * std::max(1.4826 * median(std::move(values)), cameraSigma_);
+        for (std::size_t k = 0; k < isCalm.size(); ++k) {
+            if (std::abs(light[k] - middle) > most)
+                isCalm[k] = 0;
+        }
+    }
+    for (const std::size_t word : e.words) {
+        std::vector<std::size_t> seen;
+        std::copy_if(codebook_.lit[word].begin(), codebook_.lit[word].end(), std::back_inserter(seen),
+                     [&](std::size_t plane) { return e.used[plane] != 0; });
+        if (seen.size() >= kEnough)
+            continue;
+        for (const std::size_t plane : seen) {
+            const std::size_t last = std::min(plane + kNear, isCalm.size() - 1);
+            for (std::size_t k = plane - std::min(plane, kNear); k <= last; ++k) {
+                if (isCalm[k] == 0)
+                    return true;
+            }
+        }
+    }
+    return false;
+}
+
 bool SeriesFit::believable(const Explanation& e) const {
     // Of two words there are so many that some will fit what two do not make, once planes may be left out.
     const bool two = e.words.size() > 1;
     const double most = two ? 0 : e.runs > 1 ? options_.maxDisturbed : options_.maxHidden;
-    return e.significant && static_cast<double>(e.disturbed) <= most * static_cast<double>(codebook_.planes()) &&
+    if (!e.significant || mayBeDisturbance(e))
+        return false;
+    return static_cast<double>(e.disturbed) <= most * static_cast<double>(codebook_.planes()) &&
            e.reducedCost <= options_.maxReducedCost &&
            e.explained >= (two ? options_.minExplainedByTwo : options_.minExplained);
 }

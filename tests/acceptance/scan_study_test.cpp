@@ -58,6 +58,11 @@ TEST(ScanStudy, AMirrorLeavesAChoiceThatHoldsTheLed) {
     EXPECT_GE(score.found + score.choices, score.visible * 995 / 1000);
 }
 
+TEST(ScanStudy, SomebodyWhoWalksPastIsNobodysLed) {
+    const ScanScore score = scoreUpTo(Disturbance::Person, 1, 55, ScanMethod::OneAtATime);
+    EXPECT_EQ(score.wrong, 0U) << "words of a single picture, which a flash can be taken for";
+}
+
 TEST(ScanStudy, WhatCannotBeSeenIsNotFoundElsewhere) {
     for (const auto& [disturbance, strongest] :
          {std::pair(Disturbance::Ambient, 300.0), std::pair(Disturbance::Sun, 2.0)})

@@ -12,9 +12,10 @@ constexpr double kMostShare = 0.5;
 
 }  // namespace
 
-Ambient ambientOf(const Eigen::VectorXf& around, std::span<const double> gains, double sigma) {
+Ambient ambientOf(const Codebook& codebook, const Eigen::VectorXf& around, std::span<const double> gains,
+                  double sigma) {
     Ambient ambient;
-    if (around.size() == 0)
+    if (around.size() == 0 || codebook.coloured)
         return ambient;
     ambient.light = around.cast<double>();
     for (Eigen::Index k = 0; k < ambient.light.size(); ++k)
@@ -32,7 +33,7 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
     if (filter_.used.size() != codebook.planes() || filter_.gains.size() != codebook.planes() ||
         filter_.around.size() != static_cast<Eigen::Index>(codebook.planes()))
         throw std::logic_error("AmplitudeMap: the filter does not belong to this codebook");
-    const Ambient ambient = ambientOf(filter_.around, filter_.gains, filter_.sigma);
+    const Ambient ambient = ambientOf(codebook, filter_.around, filter_.gains, filter_.sigma);
     Eigen::MatrixXd weights;
     while (weights.size() == 0) {
         if (filter_.words.empty())

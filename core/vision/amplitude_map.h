@@ -27,10 +27,12 @@ struct LightFilter {
     bool clipped = false;             ///< whether strayShare() will be asked for: it costs as much as all the rest
 };
 
-/// What the surroundings of a spot do, at the exposure that is usual; nothing where `around` is empty.
+/// What the surroundings of a spot do, at the exposure that is usual; nothing where `around` is empty, and in colours,
+/// whose channels have surroundings of their own: in so few frames they would explain too much.
 /// @param around  per plane, SpotBrightness::around
 /// @param sigma   of the values that may follow them
-[[nodiscard]] Ambient ambientOf(const Eigen::VectorXf& around, std::span<const double> gains, double sigma);
+[[nodiscard]] Ambient ambientOf(const Codebook& codebook, const Eigen::VectorXf& around, std::span<const double> gains,
+                                double sigma);
 
 /// Collects, pixel by pixel in a window, the amplitude of one module's word, its variance, and what light there is that
 /// the words do not explain; each frame less the level of the surroundings and over its exposure.

@@ -11,9 +11,10 @@ namespace {
 
 /// What a spot shows beyond drift, ambient and the words but one.
 Eigen::VectorXd lightOf(const SpotScan& scan, const MatchedSpot& match, std::size_t j) {
-    Eigen::VectorXd light =
-        scan.levelled(match.candidate) - scan.codebook.drift * match.series.drift -
-        match.series.ambient * centred(scan.ambientOfSpot(match.candidate), match.series.used).light;
+    Eigen::VectorXd light = scan.levelled(match.candidate) - scan.codebook.drift * match.series.drift;
+    const Ambient ambient = centred(scan.ambientOfSpot(match.candidate), match.series.used);
+    if (ambient.light.size() > 0)
+        light -= match.series.ambient * ambient.light;
     for (std::size_t other = 0; other < match.series.words.size(); ++other) {
         if (other == j)
             continue;

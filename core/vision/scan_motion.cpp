@@ -39,7 +39,8 @@ void ScanMotion::watch(const SpotCandidate& spot, cv::Size picture, const Codebo
     for (std::size_t k = 0; k < filter.used.size(); ++k)
         (2 * k < filter.used.size() ? late : early).used[k] = 0;
     const auto canTell = [&](const LightFilter& half) {
-        return amplitudeWeights(codebook, half.words, half.used, ambientOf(half.around, half.gains, half.sigma))
+        return amplitudeWeights(codebook, half.words, half.used,
+                                ambientOf(codebook, half.around, half.gains, half.sigma))
                    .size() > 0;
     };
     if (canTell(early) && canTell(late))

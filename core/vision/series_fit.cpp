@@ -52,25 +52,36 @@ Explanation SeriesFit::explain(const std::vector<std::size_t>& words) const {
     return best;
 }
 
-/// A word that shines in a plane or two looks like a flash, and what disturbs one plane, or changes the surroundings
-/// as they hardly ever change, may well disturb the next.
+/// Planes in which nothing but light that blinks changes, as far as the used planes and the surroundings tell.
+std::vector<std::uint8_t> SeriesFit::calmPlanes(const Explanation& e) const {
+    std::vector<std::uint8_t> isCalm = e.used;
+    // Channels have surroundings of their own.
+    if (ambient_.light.size() == 0 || codebook_.coloured)
+        return isCalm;
+    const double* light = ambient_.light.data();
+    const double middle = median({light, light + ambient_.light.size()});
+    std::vector<double> away;
+    for (std::size_t k = 0; k < isCalm.size(); ++k)
+        away.push_back(std::abs(light[k] - middle));
+    // What four planes in five stay below is what lamps do all the time.
+    std::vector<double> sorted = away;
+    const auto usual = sorted.begin() + static_cast<std::ptrdiff_t>(4 * (sorted.size() - 1) / 5);
+    std::nth_element(sorted.begin(), usual, sorted.end());
+    constexpr double kTimesUsual = 3;
+    const double most = kTimesUsual * *usual + options_.outlier * cameraSigma_;
+    for (std::size_t k = 0; k < isCalm.size(); ++k) {
+        if (away[k] > most)
+            isCalm[k] = 0;
+    }
+    return isCalm;
+}
+
+/// A word that shines in a frame or two looks like a flash, and what disturbs the frames next to it may well do so.
 bool SeriesFit::mayBeDisturbance(const Explanation& e) const {
     constexpr std::size_t kEnough = 3;
     constexpr std::size_t kNear = 3;
-    std::vector<std::uint8_t> isCalm = e.used;
-    if (ambient_.light.size() > 0) {
-        const double* light = ambient_.light.data();
-        std::vector<double> values(light, light + ambient_.light.size());
-        const double middle = median(values);
-        for (double& value : values)
-            value = std::abs(value - middle);
-        constexpr double kSpreads = 6;
-        const double most = kSpreads * std::max(1.4826 * median(std::move(values)), cameraSigma_);
-        for (std::size_t k = 0; k < isCalm.size(); ++k) {
-            if (std::abs(light[k] - middle) > most)
-                isCalm[k] = 0;
-        }
-    }
+    const std::size_t perFrame = codebook_.coloured ? 3 : 1;
+    const std::vector<std::uint8_t> isCalm = calmPlanes(e);
     for (const std::size_t word : e.words) {
         std::vector<std::size_t> seen;
         std::copy_if(codebook_.lit[word].begin(), codebook_.lit[word].end(), std::back_inserter(seen),
@@ -78,9 +89,11 @@ bool SeriesFit::mayBeDisturbance(const Explanation& e) const {
         if (seen.size() >= kEnough)
             continue;
         for (const std::size_t plane : seen) {
-            const std::size_t last = std::min(plane + kNear, isCalm.size() - 1);
-            for (std::size_t k = plane - std::min(plane, kNear); k <= last; ++k) {
-                if (isCalm[k] == 0)
+            const std::size_t reach = kNear * perFrame;
+            const std::size_t last = std::min(plane + reach, isCalm.size() - 1);
+            for (std::size_t k = plane - std::min(plane, reach); k <= last; ++k) {
+                // In its own frame the LED's halo changes its surroundings.
+                if (isCalm[k] == 0 && k / perFrame != plane / perFrame)
                     return true;
             }
         }

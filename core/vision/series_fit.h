@@ -50,6 +50,7 @@ class SeriesFit {
     [[nodiscard]] Explanation refine(Rows rows, Eigen::Index columns, const std::vector<std::size_t>& words,
                                      std::vector<std::uint8_t> used) const;
     [[nodiscard]] double costOfNothing() const;
+    [[nodiscard]] std::vector<std::uint8_t> calmPlanes(const Explanation& e) const;
     [[nodiscard]] bool mayBeDisturbance(const Explanation& e) const;
     [[nodiscard]] double divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used) const;
     [[nodiscard]] Eigen::VectorXd residualsFromLevels(std::size_t word) const;

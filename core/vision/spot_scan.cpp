@@ -14,7 +14,10 @@ void SpotScan::levelExposure(int windowRadius) {
         for (const std::size_t plane : planes)
             ++litCount[plane];
     }
-    gains = exposureGains(series, sigma, litCount);
+    gains.assign(codebook.planes(), 1);
+    // In colours too few shine in one plane, and channels clip apart.
+    if (!codebook.coloured)
+        gains = exposureGains(series, sigma, litCount);
     // Where it was darker the noise counts for more.
     std::vector<double> inverse;
     for (const double gain : gains)
@@ -32,7 +35,7 @@ Eigen::VectorXd SpotScan::levelled(std::size_t candidate) const {
 }
 
 Ambient SpotScan::ambientOfSpot(std::size_t candidate) const {
-    return ambientOf(series.around.col(static_cast<Eigen::Index>(candidate)), gains, sigma[candidate]);
+    return ambientOf(codebook, series.around.col(static_cast<Eigen::Index>(candidate)), gains, sigma[candidate]);
 }
 
 }  // namespace skincal

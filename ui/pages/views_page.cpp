@@ -6,6 +6,7 @@
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/overlap_graph.h"
 #include "ui/widgets/picture_view.h"
+#include "ui/widgets/primary_button.h"
 #include "ui/widgets/theme.h"
 
 namespace skincal {
@@ -35,7 +36,6 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview
         "The simulated rig carries its camera to the suggested place, shown in the 3D view; while patches are missing, "
         "to the next of its own places"));
     scanHere_->setObjectName(QStringLiteral("scanHere"));
-    scanHere_->setProperty("primary", true);
     scanHere_->setToolTip(tr("Take a new view from where the camera stands now"));
     buttons->addWidget(move_);
     buttons->addWidget(scanHere_);
@@ -57,7 +57,15 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview
     splitter->setChildrenCollapsible(false);
     body().addWidget(splitter, 1);
 
-    connect(move_, &QPushButton::clicked, &presenter, &ViewsPresenter::moveCamera);
+    connect(move_, &QPushButton::clicked, this, [this] {
+        hasMoved_ = true;
+        presenter_.moveCamera();
+        refresh();
+    });
+    connect(&scan, &ScanPresenter::scanned, this, [this] {
+        hasMoved_ = false;
+        refresh();
+    });
     connect(scanHere_, &QPushButton::clicked, this, &ViewsPage::scanAsked);
     connect(&presenter, &ViewsPresenter::changed, this, &ViewsPage::refresh);
     connect(&scan, &ScanPresenter::stateChanged, this, &ViewsPage::refresh);
@@ -86,6 +94,10 @@ void ViewsPage::refresh() {
     const QString obstacle = scan_.obstacle();
     scanHere_->setEnabled(obstacle.isEmpty() && !scan_.state().isRunning());
     scanHere_->setStatusTip(obstacle);
+    // A second view from the same place tells next to nothing.
+    const bool isMoveNext = presenter_.hasHands() && !hasMoved_;
+    setPrimary(move_, isMoveNext);
+    setPrimary(scanHere_, !isMoveNext);
 }
 
 void ViewsPage::showHint() {

@@ -36,6 +36,7 @@ class ViewsPage : public Page {
     OverlapGraph* graph_;
     PictureView* picture_;
     bool isActive_ = false;
+    bool hasMoved_ = false;  ///< the camera, by its button, since the last scan
 };
 
 }  // namespace skincal

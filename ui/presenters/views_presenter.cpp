@@ -88,8 +88,11 @@ QString ViewsPresenter::reason() const {
     QStringList patches;
     for (const PatchId patch : view->patches)
         patches << QString::number(patch.value);
-    return tr("From there patches %1 are in the picture; the worst module's error falls from %2 to %3 mm.")
-        .arg(patches.join(QStringLiteral(", ")))
+    const QString text =
+        patches.size() == 1
+            ? tr("From there patch %1 is in the picture; the worst module's error falls from %2 to %3 mm.")
+            : tr("From there patches %1 are in the picture; the worst module's error falls from %2 to %3 mm.");
+    return text.arg(patches.join(QStringLiteral(", ")))
         .arg(1e3 * view->gain.worstBefore, 0, 'f', 2)
         .arg(1e3 * view->gain.worstAfter, 0, 'f', 2);
 }

@@ -44,7 +44,7 @@ struct DecoderOptions {
 ///              blink its word (a reflection less than `reflectionRatio` weaker): these are handed on as
 ///              Undetected::spots, at most `maxSpots` of them; where there are more, none is
 /// A spot shared by two LEDs is separated where both centres can be fitted, else neither is reported. Where the camera
-/// moved a little, half of that is added to every standard deviation: when it moved is not known.
+/// moved a little, half of that is part of every standard deviation: when it moved is not known.
 /// @param modules  all modules of the skin; a frame that lights any other is an error
 /// @param frames   in the order in which they were taken
 /// @param load     called for each frame up to three times

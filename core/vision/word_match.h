@@ -54,8 +54,8 @@ struct SeriesMatch {
 /// light at all included) must differ by `minMargin`. One-at-a-time words have a single lit plane and hence no
 /// redundancy: there a flash exactly in that frame looks like the LED; the shape of the spot has to decide.
 /// The words of a Matched series can be separated over its `used` planes (amplitudeWeights is not empty) and its
-/// amplitudes are the least-squares ones there: an explanation whose planes keep coming and going counts as a rival,
-/// but never as the answer.
+/// amplitudes are the least-squares ones there (with `ambient`, but for its prior): an explanation whose planes keep
+/// coming and going counts as a rival, but never as the answer.
 class WordMatcher {
   public:
     /// The codebook must outlive it. Throws std::logic_error on bad options.

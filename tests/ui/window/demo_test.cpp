@@ -5,6 +5,8 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QProgressBar>
+#include <QRegularExpression>
+#include <QTableView>
 #include <QTemporaryDir>
 
 #include "core/estimation/compare.h"
@@ -42,6 +44,10 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     driven.takePicture("3-camera");
     ASSERT_TRUE(driven.scanHere());
     ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));
+    driven.find<QTableView>("detections")->selectRow(0);
+    const QString evidence = driven.find<QLabel>("evidence")->text();
+    EXPECT_TRUE(evidence.contains(QRegularExpression(QStringLiteral("sent [01]{24}, seen [01.]{24}"))))
+        << evidence.toStdString();
     driven.takePicture("4-scan");
 
     const auto patches = [&] { return driven.session().solution()->body.patches.size(); };

@@ -127,7 +127,7 @@ QString DetectionTable::wordsBelowEachOther(const WordReading& reading) {
     const QString received = QString::fromStdString(reading.received);
     if (sent.size() > kLongest)
         return {};
-    return QLatin1String("\n") + tr("sent %1, seen %2").arg(sent, received);
+    return QLatin1String("\n") + tr("sent %1\nseen %2").arg(sent, received);
 }
 
 void DetectionTable::showEvidence() {

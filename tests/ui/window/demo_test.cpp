@@ -46,7 +46,7 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));
     driven.find<QTableView>("detections")->selectRow(0);
     const QString evidence = driven.find<QLabel>("evidence")->text();
-    EXPECT_TRUE(evidence.contains(QRegularExpression(QStringLiteral("sent [01]{24}, seen [01.]{24}"))))
+    EXPECT_TRUE(evidence.contains(QRegularExpression(QStringLiteral("sent [01]{24}\\nseen [01.]{24}"))))
         << evidence.toStdString();
     driven.takePicture("4-scan");
 

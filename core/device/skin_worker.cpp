@@ -12,6 +12,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kFlush = 20ms;
+/// For the first answer: opening the port restarts many a board, whose boot loader waits two seconds for an upload; a
+/// program may have to wait for a driver of its own.
+constexpr SkinClient::Time kBoot = 5s;
+constexpr SkinClient::Time kProgramStart = 15s;
 constexpr auto kWatch = 500ms;
 constexpr auto kRestPeriod = 100ms;
 /// Of what the line carries, for streams: the rest is for lights and questions.
@@ -56,7 +60,7 @@ SkinWorker::SkinWorker(LineAddress address) : address_(std::move(address)), time
 }
 
 SkinWorker::~SkinWorker() {
-    close();
+    shut();
 }
 
 SkinWorker::Time SkinWorker::now() {
@@ -64,7 +68,7 @@ SkinWorker::Time SkinWorker::now() {
 }
 
 void SkinWorker::open() {
-    close();
+    shut();
     line_ = makeLine(address_);
     connect(line_.get(), &Line::opened, this, [this] {
         ReliableLinkOptions options;
@@ -73,8 +77,7 @@ void SkinWorker::open() {
         options.timeout = Time(static_cast<Time::rep>(3e6 * kMaxEncodedFrame / options.bytesPerSecond)) + 20ms;
         SkinListener& listener = *this;
         client_ = std::make_unique<SkinClient>(listener, options, QRandomGenerator::global()->generate());
-        // A program may have to wait for a driver of its own before it has anything to say.
-        client_->open(now(), address_.kind == LineAddress::Kind::Program ? 15s : 2s);
+        client_->open(now(), address_.kind == LineAddress::Kind::Program ? kProgramStart : kBoot);
         pump();
     });
     connect(line_.get(), &Line::received, this, [this](const QByteArray& bytes) {
@@ -89,6 +92,11 @@ void SkinWorker::open() {
 }
 
 void SkinWorker::close() {
+    isReturning_ = false;
+    shut();
+}
+
+void SkinWorker::shut() {
     if (client_ && line_) {
         client_->light({}, 0, now());
         std::vector<std::uint8_t> bytes;
@@ -110,7 +118,8 @@ void SkinWorker::close() {
 
 void SkinWorker::lose(LineFault fault, const QString& detail) {
     fail(lineHelp(fault, address_, detail));
-    if (fault == LineFault::Ended && address_.kind == LineAddress::Kind::Serial)
+    isReturning_ = isReturning_ || (fault == LineFault::Ended && address_.kind == LineAddress::Kind::Serial);
+    if (isReturning_)
         watch_.start();
 }
 
@@ -124,7 +133,7 @@ void SkinWorker::watchPort() {
 }
 
 void SkinWorker::fail(const QString& why) {
-    close();
+    shut();
     emit failed(why);
 }
 
@@ -210,14 +219,19 @@ void SkinWorker::flushStreams() {
 }
 
 void SkinWorker::onOpened(const std::string& firmware) {
+    isReturning_ = false;
     emit opened(QString::fromStdString(firmware));
 }
 
 void SkinWorker::onFault(SkinFault fault) {
     // From the event loop: the client is in the middle of something.
     QTimer::singleShot(0, this, [this, fault] {
-        if (client_)
-            fail(wordsFor(fault, address_));
+        if (!client_)
+            return;
+        fail(wordsFor(fault, address_));
+        // Plugged in again, it may take its time to start, or be pulled in the middle of that.
+        if (isReturning_)
+            watch_.start();
     });
 }
 

@@ -61,6 +61,7 @@ class SkinWorker : public QObject, private SkinListener {
 
     [[nodiscard]] static Time now();
     [[nodiscard]] std::chrono::milliseconds restPeriod() const;
+    void shut();
     void pump();
     void flushStreams();
     void fail(const QString& why);
@@ -72,7 +73,8 @@ class SkinWorker : public QObject, private SkinListener {
     std::unique_ptr<SkinClient> client_;
     QTimer timer_;
     QTimer flush_;
-    QTimer watch_;  ///< for a port that was lost
+    QTimer watch_;              ///< for a port that was lost
+    bool isReturning_ = false;  ///< it was lost, and has not answered since
     bool streamsRest_ = false;
     bool streamsTouch_ = false;
     std::map<CellNumber, RestReading> readings_;

@@ -187,43 +187,63 @@ constexpr double kLinkUsable = 5e-3;
 constexpr double kGravityGood = 0.15;
 constexpr double kGravityUsable = 0.5;
 
-/// Rms over the modules of what their covariances say; nothing without covariances.
+/// What the covariances say, m and rad per axis; nothing without covariances.
 struct Uncertainty {
-    double position = 0;  ///< m per axis
-    double rotation = 0;  ///< rad per axis
+    double position = 0;  ///< rms over the modules
+    double rotation = 0;  ///< likewise
+    ModuleId worst{};     ///< whose position is known least
+    double worstPosition = 0;
 };
 std::optional<Uncertainty> uncertaintyOf(const BodyModel& body) {
+    Uncertainty found;
     double position = 0;
     double rotation = 0;
     std::size_t count = 0;
     for (const BodyModule& module : body.modules) {
         if (!module.covariance)
             continue;
+        const double square = module.covariance->bottomRightCorner<3, 3>().trace() / 3;
         rotation += module.covariance->topLeftCorner<3, 3>().trace() / 3;
-        position += module.covariance->bottomRightCorner<3, 3>().trace() / 3;
+        position += square;
         ++count;
+        if (std::sqrt(square) > found.worstPosition) {
+            found.worst = module.id;
+            found.worstPosition = std::sqrt(square);
+        }
     }
     if (count == 0)
         return std::nullopt;
-    return Uncertainty{rootMean(position, count), rootMean(rotation, count)};
+    found.position = rootMean(position, count);
+    found.rotation = rootMean(rotation, count);
+    return found;
 }
 
-// Standard deviations (rms over the modules, per axis) beyond which a result is merely usable, and not even that.
-constexpr Uncertainty kUncertaintyGood{3e-3, 3 * kDegree};
-constexpr Uncertainty kUncertaintyUsable{10e-3, 10 * kDegree};
+/// Standard deviations per axis beyond which a result is merely usable, and not even that.
+struct UncertaintyLimit {
+    double position;  ///< m, rms over the modules
+    double rotation;  ///< rad, likewise
+};
+constexpr UncertaintyLimit kUncertaintyGood{3e-3, 3 * kDegree};
+constexpr UncertaintyLimit kUncertaintyUsable{10e-3, 10 * kDegree};
+/// The same of any one module's position, m: one that is worse leaves a result usable however good the others are.
+constexpr double kWorstGood = 5e-3;
 
 /// The verdict that the uncertainty allows; says so where it is not good.
 Trust judgeUncertainty(BodyQuality& quality, const Uncertainty& found) {
     quality.condition["position sigma"] = found.position;
     quality.condition["rotation sigma"] = found.rotation;
-    const auto within = [&](const Uncertainty& limit) {
+    const auto within = [&](const UncertaintyLimit& limit) {
         return found.position <= limit.position && found.rotation <= limit.rotation;
     };
-    if (within(kUncertaintyGood))
+    if (!within(kUncertaintyGood))
+        quality.warnings.push_back(
+            fmt::format("what was measured fixes modules to {:.1f} mm and {:.1f}° only: add gravity poses and views",
+                        found.position * 1e3, found.rotation / kDegree));
+    else if (found.worstPosition > kWorstGood)
+        quality.warnings.push_back(fmt::format("what was measured fixes module {} to {:.1f} mm only: show it in a view",
+                                               found.worst.value, found.worstPosition * 1e3));
+    else
         return Trust::Good;
-    quality.warnings.push_back(
-        fmt::format("what was measured fixes modules to {:.1f} mm and {:.1f}° only: add gravity poses and views",
-                    found.position * 1e3, found.rotation / kDegree));
     return within(kUncertaintyUsable) ? Trust::Usable : Trust::NotToBeTrusted;
 }
 

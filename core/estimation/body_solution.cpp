@@ -8,6 +8,8 @@
 
 #include "core/estimation/missing_data.h"
 #include "core/estimation/module_support.h"
+#include "core/estimation/observability.h"
+#include "core/estimation/one_sided_patches.h"
 
 namespace skincal {
 namespace {
@@ -103,6 +105,16 @@ void listPatchViews(BodySolution& solution, const BodyState& state) {
     }
     for (const auto& of : views)
         solution.estimate.patchViews.emplace_back(of.begin(), of.end());
+}
+
+/// Nothing in the data would contradict a wrong distance of a patch that is seen from one side.
+void reportOneSided(BodySolution& solution, const BodyState& state) {
+    const OneSidedPatches oneSided =
+        oneSidedPatches(solution.layout, usedMeasurements(solution).pixels, state, ShortfallOptions{}.viewAngle);
+    if (oneSided.patches.empty())
+        return;
+    solution.estimate.trustAtMost = std::max(solution.estimate.trustAtMost, Trust::Usable);
+    solution.estimate.warnings.push_back(oneSided.text);
 }
 
 /// A patch's frame is its origin's: it has none where nothing holds the origin.
@@ -226,6 +238,7 @@ BodyModel describeSolution(BodySolution solution, const PatchPoseOptions& pose) 
     if (!solution.estimate.notHeld.empty())
         solution.estimate.missing.push_back(whyNotHeld(measurements.skin, solution.estimate.notHeld));
     reportMissing(solution, measurements, state, pose);
+    reportOneSided(solution, state);
     listPatchViews(solution, state);
     placePatchFrames(solution, state);
     solution.estimate.shapes = solution.shapes.shapes;

@@ -3,60 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <stdexcept>
 
 #include "core/estimation/gravity_shortfall.h"
+#include "core/estimation/one_sided_patches.h"
 #include "core/estimation/patch_shortfall.h"
 #include "core/estimation/view_forecast.h"
 
 namespace skincal {
 namespace {
 
-double largestAngle(const std::vector<Vector3d>& directions) {
-    double angle = 0;
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-        for (std::size_t j = i + 1; j < directions.size(); ++j)
-            angle = std::max(angle, std::acos(std::clamp(directions[i].dot(directions[j]), -1.0, 1.0)));
-    }
-    return angle;
-}
-
 void findFewViews(ShortfallSearch& search) {
-    const std::size_t patches = search.solution.layout.patches.size();
-    std::vector<std::map<std::size_t, std::size_t>> leds(patches);  // per patch: by view
-    for (const PixelObservation& o : search.basis.used.pixels)
-        ++leds[search.solution.layout.patchOf[o.module]][o.view];
-    Shortfall shortfall{Shortfall::Kind::FewViews};
-    double widest = 0;
-    for (std::size_t k = 0; k < patches; ++k) {
-        const Patch& patch = search.patch(k);
-        if (!search.basis.isPlaced(patch.origin))
-            continue;
-        const Vector3d middle = search.basis.state.T_r_u[patch.origin]->translation();
-        std::vector<Vector3d> directions;
-        for (const auto& [v, count] : leds[k]) {
-            if (count >= std::min<std::size_t>(3, patch.modules.size()))
-                directions.push_back((search.basis.state.T_r_v[v]->translation() - middle).normalized());
-        }
-        const double angle = largestAngle(directions);
-        if (directions.empty() || angle >= search.options.viewAngle)
-            continue;
-        widest = std::max(widest, angle);
-        shortfall.patches.push_back(patch.id);
-    }
-    if (shortfall.patches.empty())
+    OneSidedPatches oneSided =
+        oneSidedPatches(search.solution.layout, search.basis.used.pixels, search.basis.state, search.options.viewAngle);
+    if (oneSided.patches.empty())
         return;
-    shortfall.figure = widest / kDegree;
+    Shortfall shortfall{Shortfall::Kind::FewViews};
+    shortfall.patches = std::move(oneSided.patches);
+    shortfall.figure = oneSided.widestAngle / kDegree;
     shortfall.unit = "deg";
-    const bool one = shortfall.patches.size() == 1;
-    shortfall.text = fmt::format(
-        "{} {} seen {}, so that {} distance from the camera rests on {} own size: add a view from 30° and more aside",
-        listed(shortfall.patches), one ? "is" : "are",
-        widest > 0 ? fmt::format("from one direction only (views at most {:.0f}° apart)", widest / kDegree)
-                   : "in one view only",
-        one ? "its" : "their", one ? "its" : "their");
+    shortfall.text = std::move(oneSided.text);
     search.found.push_back(std::move(shortfall));
 }
 

@@ -57,6 +57,12 @@ bool isSameBody(const BodyModel& a, const BodyModel& b) {
            a.quality.findings.size() == b.quality.findings.size();
 }
 
+bool needsViews(const Solution& solution) {
+    return std::any_of(solution.shortfalls.begin(), solution.shortfalls.end(), [](const Shortfall& shortfall) {
+        return shortfall.kind == Shortfall::Kind::FewViews || shortfall.kind == Shortfall::Kind::ModulesUnseen;
+    });
+}
+
 Guidance guidanceFor(const Solution& solution, const RunContext& context) {
     Guidance guidance;
     guidance.revision = solution.revision;

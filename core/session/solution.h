@@ -30,6 +30,9 @@ struct Solution {
 /// the other.
 [[nodiscard]] bool isSameBody(const BodyModel& a, const BodyModel& b);
 
+/// Whether patches are seen from one side only, or modules in no view at all.
+[[nodiscard]] bool needsViews(const Solution& solution);
+
 /// What to measure next; takes longer than the solution itself.
 struct Guidance {
     std::uint64_t revision = 0;

@@ -72,13 +72,6 @@ TEST(Unplug, AtAnyMomentIsNoticedAndTheSameModulesComeBack) {
     Random chance(1, "unplugs");
     double slowestNotice = 0;
     double slowestReturn = 0;
-    // Unplugged before it was open, nobody watches for it: the operator connects again.
-    QTimer operatorsHand;
-    QObject::connect(&operatorsHand, &QTimer::timeout, &device, [&] {
-        if (!isReady)
-            device.open();
-    });
-    operatorsHand.start(1000);
     device.open();
     ASSERT_TRUE(waitFor([&] { return isReady; }));
     for (int round = 0; round < unplugs(); ++round) {
@@ -107,6 +100,41 @@ TEST(Unplug, AtAnyMomentIsNoticedAndTheSameModulesComeBack) {
     EXPECT_EQ(first.size(), rig.world().skin.modules.size());
     std::cout << unplugs() << " unplugs: noticed within " << slowestNotice << " s, back within " << slowestReturn
               << " s\n";
+}
+
+// A board that waits for an upload first, or is plugged in without its power supply.
+TEST(Unplug, WhatIsSilentAtFirstAfterItsReturnIsWaitedFor) {
+    SimulatedRig rig(*findScenario("arm"), 3);
+    WiredSkin wired(rig, {});
+    const QTemporaryDir directory;
+    const QString link = QDir(directory.path()).filePath(QStringLiteral("skin"));
+    PseudoTerminal terminal;
+    bool isPowered = true;
+    QObject::connect(&terminal, &PseudoTerminal::received, &wired, [&](const QByteArray& bytes) {
+        if (isPowered)
+            wired.receive(bytes);
+    });
+    QObject::connect(&wired, &WiredSkin::sent, &terminal, &PseudoTerminal::write);
+    ASSERT_EQ(terminal.open(link), QString());
+    ProtocolSkin device(parseLineAddress(link).value(), {paperHexagon(), triangleTemplate(), rectangleTemplate()});
+    bool isOpen = false;
+    QStringList complaints;
+    QObject::connect(&device, &SkinDevice::opened, &device, [&] { isOpen = true; });
+    QObject::connect(&device, &SkinDevice::failed, &device, [&](const QString& why) {
+        isOpen = false;
+        complaints << why;
+    });
+    QObject::connect(&device, &SkinDevice::cameBack, &device, [&] { device.open(); });
+    device.open();
+    ASSERT_TRUE(waitFor([&] { return isOpen; }));
+    terminal.close();
+    ASSERT_TRUE(waitFor([&] { return complaints.size() == 1; }));
+    isPowered = false;
+    ASSERT_EQ(terminal.open(link), QString());
+    ASSERT_TRUE(waitFor([&] { return complaints.size() == 2; }));
+    EXPECT_TRUE(complaints.back().contains(QStringLiteral("nothing answers"))) << complaints.back().toStdString();
+    isPowered = true;
+    EXPECT_TRUE(waitFor([&] { return isOpen; }));
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ ExportPage::ExportPage(ExportPresenter& presenter, QWidget* parent)
     formats_->setObjectName(QStringLiteral("formats"));
     formats_->setAccessibleName(tr("Formats"));
     formats_->setMaximumWidth(150);
+    formats_->setSpacing(3);
     formats_->setCurrentRow(0);
     row->addWidget(formats_);
     auto* column = new QVBoxLayout;
@@ -79,6 +80,16 @@ ExportPage::ExportPage(ExportPresenter& presenter, QWidget* parent)
         outcome_->clear();
         refresh();
     });
+    connect(&presenter, &ExportPresenter::previewed, this, [this](const QString& text) {
+        preview_->setPlainText(text.isEmpty() ? tr("There is no placed module to export yet.") : text);
+    });
+    connect(
+        &presenter, &ExportPresenter::written, this,
+        [this](const QString& file, const std::shared_ptr<const Solution>& of) {
+            const BodyQuality& quality = of->body.quality;
+            finish(tr("Written: %1, %2 of %3 modules.").arg(file).arg(quality.modulesPlaced).arg(quality.modulesTotal));
+        });
+    connect(&presenter, &ExportPresenter::failed, this, &ExportPage::finish);
     refresh();
 }
 
@@ -96,9 +107,8 @@ void ExportPage::refresh() {
     if (!isActive_)
         return;
     description_->setText(presenter_.formats()[format()].description);
-    const QString preview = presenter_.preview(format(), kPreviewLines);
-    preview_->setPlainText(preview.isEmpty() ? tr("There is no placed module to export yet.") : preview);
-    write_->setEnabled(presenter_.body() != nullptr);
+    presenter_.preview(format(), kPreviewLines);
+    write_->setEnabled(presenter_.body() != nullptr && !presenter_.isWriting());
 }
 
 void ExportPage::browse() {
@@ -110,17 +120,14 @@ void ExportPage::browse() {
 }
 
 void ExportPage::write() {
-    const QString complaint = presenter_.write(format(), file_->text().toStdString());
-    if (complaint.isEmpty()) {
-        const BodyQuality& quality = presenter_.body()->quality;
-        outcome_->setText(tr("Written: %1, %2 of %3 modules.")
-                              .arg(file_->text())
-                              .arg(quality.modulesPlaced)
-                              .arg(quality.modulesTotal));
-        return;
-    }
-    outcome_->setText(complaint);
-    emit failed(complaint);
+    outcome_->setText(tr("Writing %1 …").arg(file_->text()));
+    presenter_.write(format(), file_->text().toStdString());
+    write_->setEnabled(!presenter_.isWriting());
+}
+
+void ExportPage::finish(const QString& outcome) {
+    outcome_->setText(outcome);
+    write_->setEnabled(presenter_.body() != nullptr && !presenter_.isWriting());
 }
 
 }  // namespace skincal

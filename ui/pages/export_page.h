@@ -17,13 +17,11 @@ class ExportPage : public Page {
 
     void setActive(bool active) override;
 
-  signals:
-    void failed(const QString& why);
-
   private:
     void refresh();
     void browse();
     void write();
+    void finish(const QString& outcome);
     [[nodiscard]] std::size_t format() const;
 
     ExportPresenter& presenter_;

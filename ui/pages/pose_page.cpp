@@ -159,8 +159,10 @@ void PosePage::showLive() {
             ? tr("Movement %1 m/s² (still below %2)").arg(*movement, 0, 'f', 2).arg(presenter_.restsBelow(), 0, 'f', 2)
             : tr("Measuring …"));
     if (const auto angle = presenter_.angleToTarget(); angle && presenter_.state().phase == Phase::Captured)
-        instruction_->setText(
-            tr("Captured. Turn the body by %1°, until the dot lies in the ring.").arg(*angle / kDegree, 0, 'f', 0));
+        instruction_->setText((presenter_.verdict() == PoseVerdict::Enough
+                                   ? tr("Captured. The ring, %1° away, would be one more good pose.")
+                                   : tr("Captured. Turn the body by %1°, until the dot lies in the ring."))
+                                  .arg(*angle / kDegree, 0, 'f', 0));
 }
 
 void PosePage::refresh() {

@@ -104,11 +104,13 @@ QWidget* ResultPage::buildQuality() {
     figures_->horizontalHeader()->setStretchLastSection(true);
     figures_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     figures_->setSelectionMode(QAbstractItemView::NoSelection);
-    column->addWidget(figures_, 3);
+    figures_->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);
+    figures_->setToolTip(tr("σ is a standard deviation; that of a position is per axis"));
+    column->addWidget(figures_, 1);
     column->addWidget(mutedLabel(tr("What to know about it:")));
     reasons_->setWordWrap(true);
     reasons_->setAccessibleName(tr("Reasons for the verdict"));
-    column->addWidget(reasons_, 2);
+    column->addWidget(reasons_, 1);
     return quality;
 }
 
@@ -127,9 +129,10 @@ std::vector<std::pair<QString, QString>> ResultPage::figuresOf(const Solution& s
                                       [](const BodyModule& module) { return module.T_body_module && !module.seen; });
     rows.emplace_back(tr("Placed by gravity and links alone"), QString::number(unseen));
     if (const auto sigmas = positionSigmas(body); !sigmas.empty()) {
-        rows.emplace_back(tr("Position, standard deviation (median)"),
+        rows.emplace_back(tr("Position from the first view, σ (median)"),
                           tr("%1 mm").arg(1e3 * sigmas[sigmas.size() / 2], 0, 'f', 2));
-        rows.emplace_back(tr("Position, standard deviation (worst)"), tr("%1 mm").arg(1e3 * sigmas.back(), 0, 'f', 2));
+        rows.emplace_back(tr("Position from the first view, σ (worst)"),
+                          tr("%1 mm").arg(1e3 * sigmas.back(), 0, 'f', 2));
     }
     const auto add = [&](const QString& name, const std::optional<double>& value, double factor, const QString& unit,
                          int digits) {
@@ -179,8 +182,12 @@ void ResultPage::refresh() {
         for (const std::string& text : *texts)
             reasons_->addItem(QString::fromStdString(text));
     }
-    for (const Shortfall& shortfall : solution->shortfalls)
-        reasons_->addItem(QString::fromStdString(shortfall.text));
+    for (const Shortfall& shortfall : solution->shortfalls) {
+        // The verdict may have named it.
+        const QString text = QString::fromStdString(shortfall.text);
+        if (reasons_->findItems(text, Qt::MatchExactly).empty())
+            reasons_->addItem(text);
+    }
     if (reasons_->count() == 0)
         reasons_->addItem(tr("Nothing is missing, and nothing disagrees."));
 }

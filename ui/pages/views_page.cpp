@@ -86,7 +86,9 @@ void ViewsPage::setActive(bool active) {
 }
 
 void ViewsPage::refresh() {
-    instruction_->setText(presenter_.instruction());
+    const bool isEnough = presenter_.isEnough();
+    const QString instruction = presenter_.instruction();
+    instruction_->setText(isEnough ? tr("✓ %1").arg(instruction) : instruction);
     move_->setText(presenter_.goesToTarget() ? tr("Move the camera there") : tr("Move the camera on"));
     reason_->setText(presenter_.reason());
     reason_->setVisible(!presenter_.reason().isEmpty());
@@ -96,8 +98,8 @@ void ViewsPage::refresh() {
     scanHere_->setStatusTip(obstacle);
     // A second view from the same place tells next to nothing.
     const bool isMoveNext = presenter_.hasHands() && !hasMoved_;
-    setPrimary(move_, isMoveNext);
-    setPrimary(scanHere_, !isMoveNext);
+    setPrimary(move_, isMoveNext && !isEnough);
+    setPrimary(scanHere_, !isMoveNext && !isEnough);
 }
 
 void ViewsPage::showHint() {

@@ -101,9 +101,14 @@ void addSolution(const Solution& solution, std::vector<Problem>& problems) {
     for (const Finding& finding : solution.body.quality.findings)
         problems.push_back({Severity::Warning, stepOf(finding), sentence(finding.text), finding.modules,
                             finding.view.value_or(std::string()), finding.pose.value_or(-1)});
-    for (const Shortfall& shortfall : solution.shortfalls)
-        problems.push_back({Severity::Note, stepOf(shortfall.kind), sentence(shortfall.text), shortfall.modules,
+    for (const Shortfall& shortfall : solution.shortfalls) {
+        const Step step = stepOf(shortfall.kind);
+        // Before the first view all patches are unseen: that is no problem, but the next step.
+        if (step == Step::Views && solution.body.views.empty())
+            continue;
+        problems.push_back({Severity::Note, step, sentence(shortfall.text), shortfall.modules,
                             shortfall.views.empty() ? std::string() : shortfall.views.front()});
+    }
 }
 
 }  // namespace

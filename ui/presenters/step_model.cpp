@@ -111,9 +111,8 @@ QVariant StepModel::data(const QModelIndex& index, int role) const {
     }
 }
 
-void StepModel::noteExport() {
-    if (const auto& solution = workbench_.session().solution())
-        exported_ = solution;
+void StepModel::noteExport(std::shared_ptr<const Solution> of) {
+    exported_ = std::move(of);
     refresh();
 }
 
@@ -140,12 +139,10 @@ Progress StepModel::progress() const {
                           [](const BodyPatch& patch) { return patch.T_body_patch.has_value(); }));
         p.modulesPlaced = solution->body.quality.modulesPlaced;
         p.isTrusted = solution->body.quality.trust != Trust::NotToBeTrusted;
-        const auto lacks = [&](Shortfall::Kind kind) {
-            return std::any_of(solution->shortfalls.begin(), solution->shortfalls.end(),
-                               [&](const Shortfall& shortfall) { return shortfall.kind == kind; });
-        };
-        p.arePosesAlike = lacks(Shortfall::Kind::PosesAlike);
-        p.areViewsFew = lacks(Shortfall::Kind::FewViews) || lacks(Shortfall::Kind::ModulesUnseen);
+        p.arePosesAlike =
+            std::any_of(solution->shortfalls.begin(), solution->shortfalls.end(),
+                        [](const Shortfall& shortfall) { return shortfall.kind == Shortfall::Kind::PosesAlike; });
+        p.areViewsFew = needsViews(*solution);
         // Undone, a decision leaves the body as it was exported.
         p.isExportNewest =
             exported_ && !session.isSolving() && (exported_ == solution || isSameBody(exported_->body, solution->body));

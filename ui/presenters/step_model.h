@@ -27,8 +27,8 @@ class StepModel : public QAbstractListModel {
     [[nodiscard]] const StepStates& states() const { return states_; }
     [[nodiscard]] Step next() const { return nextStep(states_); }
 
-    /// The newest body was written to a file.
-    void noteExport();
+    /// A body was written to a file.
+    void noteExport(std::shared_ptr<const Solution> of);
 
   signals:
     void changed();

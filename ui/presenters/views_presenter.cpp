@@ -63,12 +63,20 @@ std::optional<Isometry3d> ViewsPresenter::target() const {
     return view != nullptr ? std::optional(view->T_r_v) : std::nullopt;
 }
 
+bool ViewsPresenter::isEnough() const {
+    Session& session = workbench_.session();
+    return session.solution() && !session.isSolving() && !needsViews(*session.solution()) && !patches_.empty() &&
+           std::all_of(patches_.begin(), patches_.end(), [](const PatchState& patch) { return patch.isPlaced; });
+}
+
 QString ViewsPresenter::instruction() const {
     Session& session = workbench_.session();
     if (views_.empty())
         return tr("Scan a first view: at least one patch should be well in the picture.");
     const auto missing =
         std::count_if(patches_.begin(), patches_.end(), [](const PatchState& patch) { return !patch.isPlaced; });
+    if (isEnough())
+        return tr("Enough views: every patch is placed, and seen from more than one side.");
     if (const NextView* view = next()) {
         const QString where = QString::fromStdString(view->words);
         return missing > 0 ? tr("%n patches are not placed yet.", nullptr, static_cast<int>(missing)) + u' ' + where
@@ -78,23 +86,18 @@ QString ViewsPresenter::instruction() const {
         return tr("Working out where the camera should stand next …");
     if (missing > 0)
         return tr("Show the missing patches together with one that is placed.");
-    return tr("All patches are placed. Further views make them more exact.");
+    return tr("All patches are placed. Look at them from further sides.");
 }
 
 QString ViewsPresenter::reason() const {
     const NextView* view = next();
     if (view == nullptr)
         return {};
-    QStringList patches;
-    for (const PatchId patch : view->patches)
-        patches << QString::number(patch.value);
-    const QString text =
-        patches.size() == 1
-            ? tr("From there patch %1 is in the picture; the worst module's error falls from %2 to %3 mm.")
-            : tr("From there patches %1 are in the picture; the worst module's error falls from %2 to %3 mm.");
-    return text.arg(patches.join(QStringLiteral(", ")))
-        .arg(1e3 * view->gain.worstBefore, 0, 'f', 2)
-        .arg(1e3 * view->gain.worstAfter, 0, 'f', 2);
+    const QString gain = tr("The place of the worst module among the others is then known to %1 instead of %2 mm.")
+                             .arg(1e3 * view->gain.worstAfter, 0, 'f', 2)
+                             .arg(1e3 * view->gain.worstBefore, 0, 'f', 2);
+    return isEnough() ? tr("One more makes it more exact: %1. %2").arg(QString::fromStdString(view->words), gain)
+                      : gain;
 }
 
 bool ViewsPresenter::goesToTarget() const {

@@ -31,6 +31,8 @@ class ViewsPresenter : public QObject {
 
     [[nodiscard]] const std::vector<PatchState>& patches() const { return patches_; }
     [[nodiscard]] const std::vector<ViewState>& views() const { return views_; }
+    /// Every patch is placed and seen from several sides, as the newest solution has it: there is no need to go on.
+    [[nodiscard]] bool isEnough() const;
     /// What is missing, and where to go; one sentence each.
     [[nodiscard]] QString instruction() const;
     [[nodiscard]] QString reason() const;

@@ -9,6 +9,7 @@
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QScreen>
 #include <QStackedWidget>
 #include <QStatusBar>
 
@@ -47,7 +48,7 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
       files_(*new FileActions(workbench.session(), *this)) {
     setWindowTitle(tr("SkinCal[*]"));
     setAcceptDrops(true);
-    resize(1440, 900);
+    resize(QSize(1440, 900).boundedTo(screen()->availableSize()));
     buildPages();
     buildFrame();
     buildToolBar();
@@ -92,7 +93,6 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
         statusBar()->showMessage(tr("Saved %1").arg(directory));
     });
     connect(&steps_, &StepModel::changed, this, &MainWindow::refresh);
-    connect(&problems_, &QAbstractItemModel::modelReset, this, &MainWindow::refresh);
     setDark(Theme::current().isDark);
     showStep(Step::Connect);
     refresh();
@@ -168,7 +168,6 @@ void MainWindow::openMesh(const QString& file) {
 }
 
 void MainWindow::refresh() {
-    problemList_->setVisible(problems_.rowCount() > 0);
     body_->setGuideCamera(step() == Step::Views ? views_.target() : std::nullopt);
     const std::size_t row = indexOf(step());
     back_->setVisible(row > 0);

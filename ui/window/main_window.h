@@ -90,7 +90,6 @@ class MainWindow : public QMainWindow {
     ResultPage* result_ = nullptr;
     BodyViewWidget* body_ = nullptr;
     QComboBox* colours_ = nullptr;
-    QListView* problemList_ = nullptr;
     QPushButton* back_ = nullptr;
     QPushButton* next_ = nullptr;
     QProgressBar* busy_ = nullptr;

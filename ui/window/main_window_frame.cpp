@@ -25,6 +25,7 @@
 #include "ui/window/body_panel.h"
 #include "ui/window/file_actions.h"
 #include "ui/window/main_window.h"
+#include "ui/window/problem_list.h"
 #include "ui/window/step_delegate.h"
 
 namespace skincal {
@@ -67,12 +68,13 @@ void MainWindow::buildPages() {
     });
     connect(cameraPage, &CameraPage::failed, this,
             [this](const QString& why) { problems_.setNotice(why, Step::Camera); });
-    connect(exportPage, &ExportPage::failed, this,
+    connect(&export_, &ExportPresenter::failed, this,
             [this](const QString& why) { problems_.setNotice(why, Step::Export); });
-    connect(&export_, &ExportPresenter::written, this, [this] {
-        problems_.clearNotice();
-        steps_.noteExport();
-    });
+    connect(&export_, &ExportPresenter::written, this,
+            [this](const QString&, const std::shared_ptr<const Solution>& of) {
+                problems_.clearNotice();
+                steps_.noteExport(of);
+            });
 }
 
 QWidget* MainWindow::buildSteps() {
@@ -146,20 +148,12 @@ void MainWindow::buildFrame() {
     across->setSizes({230, 680, 530});
     across->setChildrenCollapsible(false);
 
-    problemList_ = new QListView;
-    problemList_->setObjectName(QStringLiteral("problems"));
-    problemList_->setAccessibleName(tr("Problems"));
-    problemList_->setModel(&problems_);
-    problemList_->setItemDelegate(new ProblemDelegate(problemList_));
-    problemList_->setFrameShape(QFrame::NoFrame);
-    problemList_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-    problemList_->setToolTip(tr("What is wrong or missing; activate one to go where it is mended"));
-    connect(problemList_, &QListView::activated, this, [this](const QModelIndex& index) { jumpTo(index.row()); });
-    connect(problemList_, &QListView::clicked, this, [this](const QModelIndex& index) { jumpTo(index.row()); });
+    auto* problems = new ProblemList(problems_);
+    connect(problems, &ProblemList::chosen, this, &MainWindow::jumpTo);
 
     auto* down = new QSplitter(Qt::Vertical);
     down->addWidget(across);
-    down->addWidget(problemList_);
+    down->addWidget(problems);
     down->setStretchFactor(0, 1);
     down->setSizes({760, 96});
     down->setCollapsible(0, false);
@@ -180,14 +174,22 @@ void MainWindow::buildToolBar() {
     files_.addTo(*bar);
     bar->addSeparator();
     QUndoStack& undo = workbench_.session().undoStack();
-    auto* undoAction = undo.createUndoAction(this, tr("Undo"));
-    undoAction->setShortcut(QKeySequence::Undo);
-    undoAction->setObjectName(QStringLiteral("undo"));
-    auto* redoAction = undo.createRedoAction(this, tr("Redo"));
-    redoAction->setShortcut(QKeySequence::Redo);
-    redoAction->setObjectName(QStringLiteral("redo"));
-    bar->addAction(undoAction);
-    bar->addAction(redoAction);
+    const auto add = [&](const char* name, QKeySequence::StandardKey key, const QString& word, auto work, auto canWork,
+                         auto described) {
+        QAction* action = bar->addAction(word);
+        action->setObjectName(QLatin1String(name));
+        action->setShortcut(key);
+        action->setEnabled(false);
+        connect(action, &QAction::triggered, &undo, work);
+        connect(&undo, canWork, action, &QAction::setEnabled);
+        connect(&undo, described, action, [action, word](const QString& what) {
+            action->setText(what.isEmpty() ? word : tr("%1: %2").arg(word, what));
+        });
+    };
+    add("undo", QKeySequence::Undo, tr("Undo"), &QUndoStack::undo, &QUndoStack::canUndoChanged,
+        &QUndoStack::undoTextChanged);
+    add("redo", QKeySequence::Redo, tr("Redo"), &QUndoStack::redo, &QUndoStack::canRedoChanged,
+        &QUndoStack::redoTextChanged);
     auto* space = new QWidget;
     space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
     bar->addWidget(space);

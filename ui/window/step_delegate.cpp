@@ -2,7 +2,6 @@
 
 #include <QPainter>
 
-#include "ui/presenters/problem_model.h"
 #include "ui/presenters/step_model.h"
 #include "ui/widgets/theme.h"
 
@@ -15,15 +14,6 @@ QFont smaller(QFont font) {
     else
         font.setPointSizeF(0.9 * font.pointSizeF());
     return font;
-}
-
-void paintGround(QPainter& painter, const QStyleOptionViewItem& option, const Theme& theme) {
-    if ((option.state & QStyle::State_Selected) != 0) {
-        QColor ground = theme.accent;
-        ground.setAlphaF(0.18F);
-        painter.fillRect(option.rect, ground);
-        painter.fillRect(QRect(option.rect.topLeft(), QSize(3, option.rect.height())), theme.accent);
-    }
 }
 
 /// The sign of a state: a tick, an exclamation mark, or the step's number.
@@ -56,12 +46,21 @@ void paintSign(QPainter& painter, const QPointF& centre, StepStatus status, int 
 
 }  // namespace
 
+void paintSelected(QPainter& painter, const QStyleOptionViewItem& option, const Theme& theme) {
+    if ((option.state & QStyle::State_Selected) != 0) {
+        QColor ground = theme.accent;
+        ground.setAlphaF(0.18F);
+        painter.fillRect(option.rect, ground);
+        painter.fillRect(QRect(option.rect.topLeft(), QSize(3, option.rect.height())), theme.accent);
+    }
+}
+
 void StepDelegate::paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const {
     const Theme theme = Theme::current();
     const auto status = static_cast<StepStatus>(index.data(StepModel::StatusRole).toInt());
     painter->save();
     painter->setRenderHint(QPainter::Antialiasing);
-    paintGround(*painter, option, theme);
+    paintSelected(*painter, option, theme);
     const QRectF rect = option.rect;
     paintSign(*painter, QPointF(rect.left() + 26, rect.center().y()), status, index.row() + 1, theme);
     const QString reason = status == StepStatus::Done ? QString() : index.data(StepModel::ReasonRole).toString();
@@ -86,41 +85,6 @@ void StepDelegate::paint(QPainter* painter, const QStyleOptionViewItem& option, 
 
 QSize StepDelegate::sizeHint(const QStyleOptionViewItem& option, const QModelIndex&) const {
     return {220, 2 * QFontMetrics(option.font).height() + 22};
-}
-
-void ProblemDelegate::paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const {
-    const Theme theme = Theme::current();
-    const auto severity = static_cast<Problem::Severity>(index.data(ProblemModel::SeverityRole).toInt());
-    painter->save();
-    painter->setRenderHint(QPainter::Antialiasing);
-    paintGround(*painter, option, theme);
-    const QRectF rect = option.rect;
-    const QPointF at(rect.left() + 18, rect.center().y());
-    const QColor colour = severity == Problem::Severity::Error     ? theme.bad
-                          : severity == Problem::Severity::Warning ? theme.attention
-                                                                   : theme.accent;
-    painter->setPen(Qt::NoPen);
-    painter->setBrush(colour);
-    // Told apart by shape as well: a square, a triangle, a dot.
-    if (severity == Problem::Severity::Error)
-        painter->drawRect(QRectF(at - QPointF(5, 5), QSizeF(10, 10)));
-    else if (severity == Problem::Severity::Warning)
-        painter->drawPolygon(QPolygonF{at + QPointF(0, -6), at + QPointF(6, 5), at + QPointF(-6, 5)});
-    else
-        painter->drawEllipse(at, 4.5, 4.5);
-    painter->setPen(theme.muted);
-    const QRectF step(rect.left() + 34, rect.top(), 130, rect.height());
-    painter->drawText(step, Qt::AlignLeft | Qt::AlignVCenter, index.data(ProblemModel::StepRole).toString());
-    painter->setPen(theme.text);
-    const QRectF text(step.right(), rect.top(), rect.right() - step.right() - 8, rect.height());
-    painter->drawText(
-        text, Qt::AlignLeft | Qt::AlignVCenter,
-        QFontMetrics(option.font).elidedText(index.data().toString(), Qt::ElideRight, static_cast<int>(text.width())));
-    painter->restore();
-}
-
-QSize ProblemDelegate::sizeHint(const QStyleOptionViewItem& option, const QModelIndex&) const {
-    return {200, QFontMetrics(option.font).height() + 10};
 }
 
 }  // namespace skincal

@@ -2,6 +2,8 @@
 
 #include <QStyledItemDelegate>
 
+#include "ui/widgets/theme.h"
+
 namespace skincal {
 
 /// A step of the procedure: its number or state in a circle, its name, and below what it asks for.
@@ -14,14 +16,7 @@ class StepDelegate : public QStyledItemDelegate {
     [[nodiscard]] QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const override;
 };
 
-/// A problem: a sign for how grave it is, the step it belongs to, and its text.
-class ProblemDelegate : public QStyledItemDelegate {
-    Q_OBJECT
-  public:
-    using QStyledItemDelegate::QStyledItemDelegate;
-
-    void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override;
-    [[nodiscard]] QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const override;
-};
+/// The ground of a row that is selected.
+void paintSelected(QPainter& painter, const QStyleOptionViewItem& option, const Theme& theme);
 
 }  // namespace skincal

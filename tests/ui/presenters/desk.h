@@ -86,6 +86,22 @@ class Desk {
     [[nodiscard]] bool isSolved() {
         return session().solution() && session().solution()->revision == session().revision() && !session().isSolving();
     }
+    /// @return the complaint; empty where the file was written.
+    [[nodiscard]] QString write(std::size_t format, const std::filesystem::path& file) {
+        std::optional<QString> outcome;
+        const QObject receiver;
+        QObject::connect(&exporter, &ExportPresenter::failed, &receiver, [&](const QString& why) { outcome = why; });
+        QObject::connect(&exporter, &ExportPresenter::written, &receiver, [&] { outcome = QString(); });
+        exporter.write(format, file);
+        return waitFor([&] { return outcome.has_value(); }) ? *outcome : QStringLiteral("nothing was heard of it");
+    }
+    [[nodiscard]] QString previewOf(std::size_t format, int lines) {
+        std::optional<QString> text;
+        const QObject receiver;
+        QObject::connect(&exporter, &ExportPresenter::previewed, &receiver, [&](const QString& of) { text = of; });
+        exporter.preview(format, lines);
+        return waitFor([&] { return text.has_value(); }) ? *text : QStringLiteral("nothing came");
+    }
     /// What the camera will see lit once all commands show.
     [[nodiscard]] bool isDark() { return rig.litAt(rig.now() + std::chrono::seconds(1)).empty(); }
 

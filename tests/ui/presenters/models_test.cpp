@@ -25,8 +25,8 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
     const QAbstractItemModelTester detections(&desk.scan.detections(), kFatal);
     const QAbstractItemModelTester steps(&desk.steps, kFatal);
     const QAbstractItemModelTester problems(&desk.problems, kFatal);
-    EXPECT_TRUE(desk.exporter.preview(0, 5).isEmpty());
-    EXPECT_FALSE(desk.exporter.write(0, "nowhere").isEmpty());
+    EXPECT_TRUE(desk.previewOf(0, 5).isEmpty());
+    EXPECT_FALSE(desk.write(0, "nowhere").isEmpty());
 
     ASSERT_TRUE(desk.connectSkin());
     ASSERT_TRUE(desk.capturePoses(6));
@@ -92,11 +92,11 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
     const QSignalSpy written(&desk.exporter, &ExportPresenter::written);
     for (std::size_t format = 0; format < desk.exporter.formats().size(); ++format) {
         const auto file = directory / ("body" + desk.exporter.formats()[format].suffix.toStdString());
-        EXPECT_EQ(desk.exporter.write(format, file), "");
+        EXPECT_EQ(desk.write(format, file), QString());
         const std::string text = test::readText(file);
         EXPECT_FALSE(text.empty());
         // A file where a folder should be: nothing is written.
-        EXPECT_NE(desk.exporter.write(format, file / "body"), "");
+        EXPECT_FALSE(desk.write(format, file / "body").isEmpty());
         EXPECT_EQ(test::readText(file), text);
         if (desk.exporter.formats()[format].isReport) {
             if (text.starts_with("<!DOCTYPE")) {
@@ -111,13 +111,13 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
             continue;
         }
         for (const int lines : {1, 7}) {
-            QString preview = desk.exporter.preview(format, lines);
+            QString preview = desk.previewOf(format, lines);
             EXPECT_EQ(preview.count('\n'), lines);
             EXPECT_TRUE(preview.endsWith(QStringLiteral("…")));
             preview.chop(1);
             EXPECT_EQ(text.substr(0, preview.toStdString().size()), preview.toStdString());
         }
-        EXPECT_EQ(desk.exporter.preview(format, 1'000'000).toStdString(), text);
+        EXPECT_EQ(desk.previewOf(format, 1'000'000).toStdString(), text);
     }
     EXPECT_EQ(static_cast<std::size_t>(written.count()), desk.exporter.formats().size());
     const auto read = readBody(directory / "body.body.json");
@@ -185,13 +185,51 @@ TEST(DetectionModel, TellsWhichOfSeveralSpotsTheBodyTook) {
     EXPECT_EQ(rowOf(told).state, DetectionRow::State::Used);
 }
 
+TEST(ExportPresenter, TheNewestPreviewAloneArrives) {
+    Desk desk;
+    desk.session().load(openedFrom(recordingOf(buildWorld(*findScenario("arm"), 1))));
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    const QSignalSpy previewed(&desk.exporter, &ExportPresenter::previewed);
+    desk.exporter.preview(0, 3);
+    desk.exporter.preview(1, 3);
+    desk.exporter.preview(2, 1);
+    ASSERT_TRUE(waitFor([&] { return previewed.count() > 0; }));
+    EXPECT_EQ(previewed.count(), 1);
+    EXPECT_TRUE(previewed.front().front().toString().startsWith(QStringLiteral("id,")));
+}
+
+TEST(ExportPresenter, ABodyThatChangesWhileItIsWrittenIsNotTakenForWritten) {
+    Desk desk;
+    desk.session().load(openedFrom(recordingOf(buildWorld(*findScenario("arm"), 1))));
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+    QObject::connect(&desk.exporter, &ExportPresenter::written, &desk.steps,
+                     [&](const QString&, const std::shared_ptr<const Solution>& of) { desk.steps.noteExport(of); });
+    const test::TemporaryDirectory directory;
+    desk.exporter.write(0, directory / "arm.body.json");
+    EXPECT_TRUE(desk.exporter.isWriting());
+    desk.pose.poses().setDropped(1, true);
+    ASSERT_TRUE(waitFor([&] { return desk.isSolved() && !desk.exporter.isWriting(); }));
+    EXPECT_EQ(desk.steps.states()[static_cast<std::size_t>(Step::Export)].reason, StepReason::Changed);
+}
+
+TEST(ExportPresenter, WhatIsBeingWrittenIsWrittenThoughTheWindowCloses) {
+    const test::TemporaryDirectory directory;
+    {
+        Desk desk;
+        desk.session().load(openedFrom(recordingOf(buildWorld(*findScenario("arm"), 1))));
+        ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
+        desk.exporter.write(0, directory / "arm.body.json");
+    }
+    EXPECT_TRUE(readBody(directory / "arm.body.json"));
+}
+
 TEST(StepModel, WhatIsUndoneLeavesAnExportUpToDate) {
     Desk desk;
     desk.session().load(openedFrom(recordingOf(buildWorld(*findScenario("arm"), 1))));
     ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));
     const auto state = [&] { return desk.steps.states()[static_cast<std::size_t>(Step::Export)]; };
     EXPECT_EQ(state().status, StepStatus::ToDo);
-    desk.steps.noteExport();
+    desk.steps.noteExport(desk.session().solution());
     EXPECT_EQ(state().status, StepStatus::Done);
     desk.pose.poses().setDropped(1, true);
     ASSERT_TRUE(waitFor([&] { return desk.isSolved(); }));

@@ -83,6 +83,7 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     line->clear();
     QTest::keyClicks(line, file);
     ASSERT_TRUE(driven.click("write"));
+    ASSERT_TRUE(driven.waitFor([&] { return driven.steps().states()[6].status == StepStatus::Done; }));
     driven.takePicture("7-export");
     EXPECT_EQ(driven.steps().states()[6].status, StepStatus::Done);
 

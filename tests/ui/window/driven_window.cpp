@@ -3,15 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <QDir>
-#include <QElapsedTimer>
 
 #include "tests/ui/watchful_application.h"
+#include "tests/wait_for.h"
 #include "ui/scene3d/body_view_widget.h"
 
 namespace skincal {
 namespace {
-
-constexpr int kPatience_ms = 120'000;  // on machines that do much else
 
 Workbench& withRig(Workbench& workbench, SimulatedRig& rig) {
     rig.setSpeed(0);
@@ -37,14 +35,7 @@ DrivenWindow::~DrivenWindow() {
 }
 
 bool DrivenWindow::waitFor(const std::function<bool()>& isSo) {
-    QElapsedTimer timer;
-    timer.start();
-    while (!isSo()) {
-        if (timer.elapsed() > kPatience_ms)
-            return false;
-        QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents | QEventLoop::AllEvents);
-    }
-    return true;
+    return test::waitFor(isSo);
 }
 
 bool DrivenWindow::click(const char* name) {

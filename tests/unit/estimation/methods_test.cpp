@@ -242,6 +242,29 @@ TEST(PaperMethod, NamesItsOutliers) {
     }
 }
 
+TEST_P(OurMethods, WhatWasSeenFromOneSideIsUsableAtMost) {
+    Random random(31, "one side");
+    SyntheticWorld world = makeWorld(random, bentPatches());
+    const auto oneSided = [&] {
+        const BodyModel body = calibrate(GetParam(), world.measurements).value();
+        const auto isSaid = [](const std::string& warning) {
+            return warning.find("add a view from 30°") < warning.size();
+        };
+        const auto& warnings = body.quality.warnings;
+        const bool said = std::any_of(warnings.begin(), warnings.end(), isSaid);
+        EXPECT_EQ(body.quality.modulesPlaced, world.T_r_u.size());
+        EXPECT_EQ(body.quality.trust, said ? Trust::Usable : Trust::Good);
+        return said;
+    };
+    EXPECT_FALSE(oneSided());
+    // A second view from the same place adds nothing that could contradict the first.
+    world.measurements.views.resize(1);
+    EXPECT_TRUE(oneSided());
+    world.measurements.views.push_back(world.measurements.views[0]);
+    world.measurements.views[1].name = "again";
+    EXPECT_TRUE(oneSided());
+}
+
 TEST_P(OurMethods, PlacesFlatPatches) {
     Random random(9, "flat");
     SyntheticOptions options;

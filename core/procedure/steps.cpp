@@ -33,15 +33,19 @@ StepState poseState(const Progress& p) {
                     : StepState{StepStatus::InProgress, StepReason::TooFewPoses};
 }
 
+StepReason whyNoPictures(const Progress& p) {
+    return p.hasCamera ? StepReason::NoPictures : StepReason::NoCamera;
+}
+
 StepState cameraState(const Progress& p) {
     if (p.isCameraLost)
         return {StepStatus::NeedsAttention, StepReason::CameraLost};
     if (!p.hasIntrinsics)
         return p.hasPictures ? StepState{StepStatus::InProgress, StepReason::NoIntrinsics}
-                             : StepState{StepStatus::ToDo, StepReason::NoCamera};
+                             : StepState{StepStatus::ToDo, whyNoPictures(p)};
     // Intrinsics from a file don't make a picture; a scan that is there needs no camera any more.
     if (!p.hasPictures && p.views == 0)
-        return {StepStatus::ToDo, StepReason::NoCamera};
+        return {StepStatus::ToDo, whyNoPictures(p)};
     return {StepStatus::Done, StepReason::None};
 }
 
@@ -57,7 +61,7 @@ StepState scanState(const Progress& p) {
     if (p.isCameraLost)
         return {StepStatus::Blocked, StepReason::CameraLost};
     if (!p.hasPictures)
-        return {StepStatus::Blocked, StepReason::NoCamera};
+        return {StepStatus::Blocked, whyNoPictures(p)};
     return {StepStatus::ToDo, StepReason::FirstView};
 }
 

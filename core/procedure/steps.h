@@ -29,7 +29,8 @@ enum class StepReason {
     NoPoses,
     TooFewPoses,
     PosesAlike,  ///< gravity does not tell how modules are turned, add poses from other directions
-    NoCamera,
+    NoCamera,    ///< none is chosen
+    NoPictures,  ///< the one that is chosen has not begun
     CameraLost,
     NoIntrinsics,
     FirstView,  ///< all is ready to scan one
@@ -58,7 +59,8 @@ struct Progress {
     std::size_t poses = 0;
     bool arePosesAlike = false;  ///< as the newest solution sees it
     bool hasIntrinsics = false;
-    bool hasPictures = false;  ///< the camera runs
+    bool hasCamera = false;    ///< one is chosen
+    bool hasPictures = false;  ///< it runs
     bool isCameraLost = false;
     std::size_t views = 0;
     bool isSolving = false;  ///< figures below are of an older body, or there is none yet

@@ -104,9 +104,9 @@ QWidget* ResultPage::buildQuality() {
     figures_->horizontalHeader()->setStretchLastSection(true);
     figures_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     figures_->setSelectionMode(QAbstractItemView::NoSelection);
-    figures_->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);
+    figures_->verticalHeader()->setDefaultSectionSize(figures_->fontMetrics().height() + 8);
     figures_->setToolTip(tr("σ is a standard deviation; that of a position is per axis"));
-    column->addWidget(figures_, 1);
+    column->addWidget(figures_, 3);
     column->addWidget(mutedLabel(tr("What to know about it:")));
     reasons_->setWordWrap(true);
     reasons_->setAccessibleName(tr("Reasons for the verdict"));

@@ -41,6 +41,8 @@ QString sentenceOf(StepReason reason) {
             return StepModel::tr("poses are too alike");
         case StepReason::NoCamera:
             return StepModel::tr("choose a camera");
+        case StepReason::NoPictures:
+            return StepModel::tr("waiting for a picture");
         case StepReason::CameraLost:
             return StepModel::tr("the camera gives no pictures");
         case StepReason::NoIntrinsics:
@@ -75,6 +77,7 @@ StepModel::StepModel(Workbench& workbench, const ConnectPresenter& connection, c
         connect(&session, signal, this, &StepModel::refresh);
     connect(&session, &Session::solvingChanged, this, &StepModel::refresh);
     connect(&connection, &ConnectPresenter::stateChanged, this, &StepModel::refresh);
+    connect(&workbench, &Workbench::cameraChosen, this, &StepModel::refresh);
     connect(&scan, &ScanPresenter::cameraFailed, this, [this] {
         isCameraLost_ = true;
         refresh();
@@ -127,6 +130,7 @@ Progress StepModel::progress() const {
         links.begin(), links.end(), [](const JudgedLink& link) { return link.kind == LinkKind::Adjacent; }));
     p.poses = posesOf(session.measured(), session.decisions()).size();
     p.hasIntrinsics = session.decisions().camera.has_value();
+    p.hasCamera = workbench_.camera() != nullptr;
     p.hasPictures = !scan_.picture().empty();
     p.isCameraLost = isCameraLost_;
     p.views = session.measured().views.size() - session.decisions().droppedViews.size();

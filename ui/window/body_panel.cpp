@@ -41,6 +41,7 @@ BodyPanel::BodyPanel(QWidget* parent)
     stale_->setProperty("attention", true);
     stale_->hide();
     bar->addWidget(stale_);
+    bar->addSpacing(8);
     bar->addWidget(measure);
     bar->addWidget(fit);
     column->addLayout(bar);

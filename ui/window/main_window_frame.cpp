@@ -163,6 +163,8 @@ void MainWindow::buildFrame() {
     busy_->setRange(0, 0);
     busy_->setMaximumWidth(120);
     busy_->setVisible(false);
+    // No higher than the bar is without it: what is above must not move.
+    busy_->setMaximumHeight(statusBar()->sizeHint().height() - 6);
     busy_->setAccessibleName(tr("Solving"));
     statusBar()->addPermanentWidget(busy_);
 }

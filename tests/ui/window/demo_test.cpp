@@ -39,8 +39,7 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));
     driven.takePicture("2-pose");
     ASSERT_TRUE(driven.useMakersIntrinsics());
-    ASSERT_TRUE(driven.waitFor([&] { return driven.find<QPushButton>("scan") != nullptr; }));
-    driven.window.showStep(Step::Camera);
+    ASSERT_TRUE(driven.waitFor([&] { return driven.steps().states()[2].status == StepStatus::Done; }));
     driven.takePicture("3-camera");
     ASSERT_TRUE(driven.scanHere());
     ASSERT_TRUE(driven.waitFor([&] { return driven.isSolved(); }));

@@ -76,6 +76,12 @@ TEST(Steps, HaveTheStatesOfTheTable) {
 
         {"complete", Step::Camera, [](Progress&) {}, {Done, Reason::None}},
         {"empty", Step::Camera, [](Progress&) {}, {ToDo, Reason::NoCamera}, empty},
+        {"chosen", Step::Camera, [](Progress& p) { p.hasCamera = true; }, {ToDo, Reason::NoPictures}, empty},
+        {"known and chosen",
+         Step::Camera,
+         [](Progress& p) { p.hasIntrinsics = p.hasCamera = true; },
+         {ToDo, Reason::NoPictures},
+         empty},
         {"runs", Step::Camera, [](Progress& p) { p.hasPictures = true; }, {InProgress, Reason::NoIntrinsics}, empty},
         {"lost", Step::Camera, [](Progress& p) { p.isCameraLost = true; }, {NeedsAttention, Reason::CameraLost}},
         {"known but off", Step::Camera, [](Progress& p) { p.hasIntrinsics = true; }, {ToDo, Reason::NoCamera}, empty},
@@ -100,6 +106,10 @@ TEST(Steps, HaveTheStatesOfTheTable) {
          Step::Scan,
          [](Progress& p) { p.views = 0, p.hasPictures = false; },
          {Blocked, Reason::NoCamera}},
+        {"no picture yet",
+         Step::Scan,
+         [](Progress& p) { p.views = 0, p.hasCamera = true, p.hasPictures = false; },
+         {Blocked, Reason::NoPictures}},
         {"lost after", Step::Scan, [](Progress& p) { p.isSkinLost = p.isCameraLost = true; }, {Done, Reason::None}},
 
         {"complete", Step::Views, [](Progress&) {}, {Done, Reason::None}},
@@ -194,7 +204,8 @@ Progress randomProgress(Random& random) {
     p.poses = random.index(6);
     p.arePosesAlike = coin();
     p.hasIntrinsics = random.uniform() < 0.7;
-    p.hasPictures = coin();
+    p.hasCamera = random.uniform() < 0.8;
+    p.hasPictures = p.hasCamera && coin();
     p.isCameraLost = random.uniform() < 0.2;
     p.views = random.index(3);
     p.isSolving = coin();

@@ -17,7 +17,9 @@ QString timingOf(const ScanRun& run) {
     if (!run.timing || !run.plan)
         return QStringLiteral("its light could not be timed, so pictures were taken one by one");
     const auto ms = [](ScanRun::Time time) { return std::chrono::round<std::chrono::milliseconds>(time).count(); };
-    return QStringLiteral("light shows %1 ± %2 ms after its command (jitter %3 ms), %4 pictures for each pattern")
+    return QStringLiteral(
+               "by the pictures' times light shows %1 ± %2 ms after its command (jitter %3 ms); "
+               "each pattern was lit for %4 pictures")
         .arg(ms(run.timing->latency))
         .arg(ms(run.timing->uncertainty))
         .arg(ms(run.timing->jitter))

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <iostream>
 #include <map>
 #include <set>
 
@@ -182,18 +183,38 @@ class Bench {
 
 constexpr std::size_t kThousand = 32;  ///< pictures of a scan of 1,000 modules
 
-TEST(ScanStream, AThousandModulesTakeThreeSecondsWithAUsualWebcam) {
+/// The longest of some scans, none of which may go wrong.
+Time slowestScan(const char* what, const Desk& desk, int mostPeriods) {
     Time slowest{};
+    int periods = 0;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
-        Bench bench({}, seed);
+        Bench bench(desk, seed);
         bench.run(kThousand);
-        ASSERT_EQ(bench.state.phase, Phase::Decoding);
+        EXPECT_EQ(bench.state.phase, Phase::Decoding);
         EXPECT_EQ(bench.wrong, 0);
-        EXPECT_EQ(bench.periods, 2);
         slowest = std::max(slowest, bench.took);
+        periods = std::max(periods, bench.periods);
     }
-    EXPECT_LE(slowest, 3s);
-    RecordProperty("slowest_ms", static_cast<int>(slowest / 1ms));
+    EXPECT_LE(periods, mostPeriods);
+    std::cout << "32 pictures at 30/s, " << what << ": " << slowest / 1ms << " ms at most, a pattern lit for "
+              << periods << " pictures\n";
+    return slowest;
+}
+
+TEST(ScanStream, AThousandModulesTakeThreeSecondsWithAUsualWebcam) {
+    EXPECT_LE(slowestScan("latency 80 ms", {}, 2), 3s);
+    Desk lossy;
+    lossy.dropped = 0.05;
+    slowestScan("5 % of them dropped", lossy, 3);
+    Desk rolling;
+    rolling.exposed = 36ms;
+    slowestScan("rolling shutter, 16 ms open and 20 ms read", rolling, 3);
+    Desk late;
+    late.latency = 250ms;
+    EXPECT_LE(slowestScan("latency 250 ms", late, 2), 4s);
+    Desk atOnce;
+    atOnce.toggles = Toggles::AtOnce;
+    slowestScan("a skin that lights at once", atOnce, 4);
 }
 
 TEST(ScanStream, NoPictureIsEverTakenForAnother) {

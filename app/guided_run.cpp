@@ -12,6 +12,20 @@ namespace {
 
 constexpr int kScanTries = 3;
 
+/// How the light was timed, for the log of who looks for what is slow.
+QString timingOf(const ScanRun& run) {
+    if (!run.timing || !run.plan)
+        return QStringLiteral("its light could not be timed, so pictures were taken one by one");
+    const auto ms = [](ScanRun::Time time) { return std::chrono::round<std::chrono::milliseconds>(time).count(); };
+    return QStringLiteral(
+               "by the pictures' times light shows %1 ± %2 ms after its command (jitter %3 ms); "
+               "each pattern was lit for %4 pictures")
+        .arg(ms(run.timing->latency))
+        .arg(ms(run.timing->uncertainty))
+        .arg(ms(run.timing->jitter))
+        .arg(run.plan->periods);
+}
+
 QString numbers(const Vector3d& v) {
     return QStringLiteral("%1 %2 %3").arg(v.x()).arg(v.y()).arg(v.z());
 }
@@ -188,7 +202,11 @@ void GuidedRun::startScan() {
 void GuidedRun::viewScanned(const std::string& view) {
     const ScannedView* scanned = workbench_.session().findView(view);
     const std::size_t found = scanned == nullptr ? 0 : scanned->decoded.found.size();
-    say(QStringLiteral("View %1 of %2: %3 modules found").arg(scanned_ + 1).arg(options_.views).arg(found));
+    say(QStringLiteral("View %1 of %2: %3 modules found; %4")
+            .arg(scanned_ + 1)
+            .arg(options_.views)
+            .arg(found)
+            .arg(timingOf(scan_.state())));
     ++scanned_;
     if (scanned_ == options_.views) {
         scan_.setActive(false);

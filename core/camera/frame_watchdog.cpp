@@ -1,24 +1,14 @@
 #include "core/camera/frame_watchdog.h"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
+
+#include "core/vision/light_change.h"
 
 namespace skincal {
 namespace {
 
 constexpr int kBars = 7;
-
-bool isSamePicture(const cv::Mat& a, const cv::Mat& b) {
-    if (a.data == b.data)
-        return true;
-    const std::size_t bytes = static_cast<std::size_t>(a.cols) * a.elemSize();
-    for (int row = 0; row < a.rows; ++row) {
-        if (std::memcmp(a.ptr(row), b.ptr(row), bytes) != 0)
-            return false;
-    }
-    return true;
-}
 
 }  // namespace
 
@@ -76,8 +66,7 @@ std::optional<FrameFault> FrameWatchdog::faultOf(const CameraFrame& frame, Time 
         return FrameFault::Stale;
     if (frame.time > now + options_.newest)
         return FrameFault::FromTheFuture;
-    if (!options_.mayStandStill && last_ && last_->image.type() == frame.image.type() &&
-        isSamePicture(last_->image, frame.image))
+    if (!options_.mayStandStill && last_ && isSamePicture(last_->image, frame.image))
         return FrameFault::RepeatedContent;
     return std::nullopt;
 }

@@ -164,10 +164,18 @@ std::uint64_t ProtocolSkin::light(const std::vector<LitModule>& lit) {
     return token_;
 }
 
+std::uint64_t ProtocolSkin::lightAt(const std::vector<LitModule>& lit, std::chrono::microseconds when) {
+    lit_ = lit;
+    ++token_;
+    tellLight(when);
+    return token_;
+}
+
 /// While cells have no numbers it waits for adopt().
-void ProtocolSkin::tellLight() {
+void ProtocolSkin::tellLight(std::optional<std::chrono::microseconds> when) {
     if (state_ == State::Open && !cellOf_.empty())
-        post(worker_, [worker = worker_, cells = cellsOf(lit_), token = token_] { worker->light(cells, token); });
+        post(worker_,
+             [worker = worker_, cells = cellsOf(lit_), token = token_, when] { worker->light(cells, token, when); });
 }
 
 void ProtocolSkin::streamAcceleration(bool on) {

@@ -31,6 +31,8 @@ class ProtocolSkin : public SkinDevice {
     void streamAcceleration(bool on) override;
     void streamTactile(bool on) override;
     std::uint64_t light(const std::vector<LitModule>& lit) override;
+    [[nodiscard]] std::optional<std::chrono::microseconds> now() const override { return SkinWorker::now(); }
+    std::uint64_t lightAt(const std::vector<LitModule>& lit, std::chrono::microseconds when) override;
     void remember(const Skin& skin) override { modules_.remember(skin); }
     void prepare(const std::vector<std::vector<LitModule>>& sets) override;
     [[nodiscard]] std::vector<SilentModule> silent() const override;
@@ -42,7 +44,7 @@ class ProtocolSkin : public SkinDevice {
     enum class State { Closed, Opening, Open };
 
     void adopt(const SkinNetwork& network);
-    void tellLight();
+    void tellLight(std::optional<std::chrono::microseconds> when = {});
     [[nodiscard]] std::vector<LitCell> cellsOf(const std::vector<LitModule>& lit) const;
     void emitAcceleration(const std::vector<RestReading>& readings, qint64 time_us);
     void emitTouch(const std::vector<CellTouch>& touches, qint64 time_us);

@@ -4,6 +4,7 @@
 #include <QString>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/skin/skin.h"
@@ -65,6 +66,14 @@ class SkinDevice : public QObject {
     /// newer one overtakes may never be acknowledged.
     /// @return the token, rising with every call.
     virtual std::uint64_t light(const std::vector<LitModule>& lit) = 0;
+    /// Now, on the clock of lightAt() (as a rule std::chrono::steady_clock, as of pictures). Nothing where LEDs can't
+    /// be lit at a given time.
+    [[nodiscard]] virtual std::optional<std::chrono::microseconds> now() const { return std::nullopt; }
+    /// As light(), but at that time, or at once where that is over by the time the cells hear of it. Not before the
+    /// last command has been acknowledged: cells need not keep more than one in mind.
+    virtual std::uint64_t lightAt(const std::vector<LitModule>& lit, std::chrono::microseconds /*when*/) {
+        return light(lit);
+    }
 
     /// Modules of an earlier time: those that have a unique id keep their module ids.
     virtual void remember(const Skin& /*skin*/) {}

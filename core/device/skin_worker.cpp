@@ -166,10 +166,10 @@ void SkinWorker::prepare(const std::vector<std::vector<LitCell>>& sets) {
         client_->prepare(sets);
 }
 
-void SkinWorker::light(const std::vector<LitCell>& lit, quint64 token) {
+void SkinWorker::light(const std::vector<LitCell>& lit, quint64 token, std::optional<std::chrono::microseconds> when) {
     if (!client_)
         return;
-    client_->light(lit, token, now());
+    client_->light(lit, token, now(), when);
     pump();
 }
 

@@ -5,6 +5,7 @@
 #include <QTimer>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "core/device/line_address.h"
 #include "core/device/protocol/skin_client.h"
@@ -20,12 +21,17 @@ class SkinWorker : public QObject, private SkinListener {
     explicit SkinWorker(LineAddress address);
     ~SkinWorker() override;
 
+    /// std::chrono::steady_clock.
+    [[nodiscard]] static std::chrono::microseconds now();
+
   public slots:
     void open();
     void close();
     void explore();
     void prepare(const std::vector<std::vector<skincal::LitCell>>& sets);
-    void light(const std::vector<skincal::LitCell>& lit, quint64 token);
+    /// @param when  on now()'s clock; at once where there is none
+    void light(const std::vector<skincal::LitCell>& lit, quint64 token,
+               std::optional<std::chrono::microseconds> when = {});
     /// Lets every cell send as often as the line can carry, but not more often than so.
     void streamRest(bool on);
     void streamTouch(bool on);
@@ -59,7 +65,6 @@ class SkinWorker : public QObject, private SkinListener {
     void onRest(std::span<const RestReading> readings, std::span<const CellNumber> missing) override;
     void onTouch(std::span<const CellTouch> touches, Time time) override;
 
-    [[nodiscard]] static Time now();
     [[nodiscard]] std::chrono::milliseconds restPeriod() const;
     void shut();
     void pump();

@@ -56,7 +56,13 @@ void RenderWorker::work(const std::stop_token& stop) {
                 boards.emplace(world_->scenario.camera, world_->scenario.pictures.blur_px);
             held = boards->paint(*request.board, request.T_v_b);
         }
-        picture.frame.image = renderer->render(request.lit, request.frame, request.colour, request.exposure, held);
+        std::vector<cv::Mat> looks;
+        std::vector<Shutter::Time> until;
+        for (const LitUntil& span : request.lit) {
+            looks.push_back(renderer->render(span.lit, request.frame, request.colour, request.exposure, held));
+            until.push_back(span.until);
+        }
+        picture.frame.image = looks.size() == 1 ? looks.front() : exposeRows(looks, until, request.shutter);
         {
             const std::lock_guard lock(mutex_);
             picture_ = std::move(picture);

@@ -10,6 +10,7 @@
 
 #include "core/camera/frame_source.h"
 #include "core/camera_calibration/board_plan.h"
+#include "core/rig/shutter.h"
 #include "core/simulation/renderer.h"
 
 namespace skincal {
@@ -17,7 +18,8 @@ namespace skincal {
 /// A picture to draw, and what to call it.
 struct RenderRequest {
     Isometry3d T_r_v = Isometry3d::Identity();
-    std::vector<LitModule> lit;
+    std::vector<LitUntil> lit;  ///< while it is exposed, one at least
+    Shutter shutter;
     std::size_t frame = 0;  ///< of the disturbances, see FrameRenderer
     bool colour = false;
     double exposure = 1;             ///< see FrameRenderer::render

@@ -24,7 +24,7 @@ RigClock::Time timeOf(std::uint64_t frame) {
 }  // namespace
 
 SimulatedCamera::SimulatedCamera(SimulatedRig& rig, QObject* parent)
-    : FrameSource(parent), rig_(&rig), world_(rig.sharedWorld()) {
+    : FrameSource(parent), rig_(&rig), world_(rig.sharedWorld()), chance_(world_->seed, "lost pictures") {
     worker_ = std::make_unique<RenderWorker>(
         world_, [this] { QMetaObject::invokeMethod(this, &SimulatedCamera::deliver, Qt::QueuedConnection); });
     connect(&rig, &SimulatedRig::cameraPulled, this, &SimulatedCamera::unplugged);
@@ -128,7 +128,8 @@ void SimulatedCamera::expose(std::uint64_t run, std::uint64_t frame) {
     sequence_ = firstSequence_ + frame;
     RenderRequest request;
     request.T_r_v = rig_->cameraPose(time);
-    request.lit = rig_->litAt(time);
+    request.lit = rig_->litDuring(time);
+    request.shutter = rig_->shutter();
     request.frame = sequence_ % kCourse;
     request.colour = world_->scenario.views.scan == ScanKind::Coloured;
     request.exposure = exposure_ / kUsualExposure;
@@ -161,7 +162,20 @@ void SimulatedCamera::deliver() {
     if (!picture || picture->run != run_)
         return;
     letTimeGoOn();
+    const double chance = chance_.uniform();
+    if (chance < dropped_)
+        return;
+    if (chance < dropped_ + repeated_ && !last_.empty())
+        picture->frame.image = last_;
+    last_ = picture->frame.image;
     emit frameArrived(picture->frame);
+}
+
+void SimulatedCamera::setLosses(double dropped, double repeated) {
+    if (!(dropped >= 0) || !(repeated >= 0) || !(dropped + repeated <= 1))
+        throw std::logic_error("SimulatedCamera: no shares");
+    dropped_ = dropped;
+    repeated_ = repeated;
 }
 
 void SimulatedCamera::letTimeGoOn() {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/camera/frame_source.h"
+#include "core/geometry/random.h"
 #include "core/rig/simulated_rig.h"
 
 namespace skincal {
@@ -48,6 +49,9 @@ class SimulatedCamera : public FrameSource {
     void stop() override;
 
     [[nodiscard]] bool isRunning() const { return running_; }
+    /// Shares of pictures that never come, and that come with the pixels of the one before them: none at first. Throws
+    /// std::logic_error where they are none.
+    void setLosses(double dropped, double repeated);
 
   private:
     using Time = RigClock::Time;
@@ -68,6 +72,10 @@ class SimulatedCamera : public FrameSource {
     Time startedAt_{};
     std::uint64_t firstSequence_ = 0;
     std::uint64_t sequence_ = 0;
+    Random chance_;
+    double dropped_ = 0;
+    double repeated_ = 0;
+    cv::Mat last_;
     std::unique_ptr<RenderWorker> worker_;
 };
 

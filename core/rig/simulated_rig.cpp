@@ -1,5 +1,6 @@
 #include "core/rig/simulated_rig.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace skincal {
@@ -99,16 +100,34 @@ void SimulatedRig::plugCamera() {
 }
 
 void SimulatedRig::setCameraLatency(std::chrono::milliseconds latency) {
-    if (latency.count() < 0)
+    if (latency < shutter_.length())
         throw std::logic_error("SimulatedRig: the camera can't see into the future");
     latency_ = latency;
 }
 
-const std::vector<LitModule>& SimulatedRig::litAt(Time time) const {
-    auto command = commands_.rbegin();
-    while (std::next(command) != commands_.rend() && command->time + latency_ > time)
-        ++command;
-    return command->lit;
+void SimulatedRig::setShutter(const Shutter& shutter) {
+    if (shutter.open.count() < 0 || shutter.readout.count() < 0 || shutter.length() > latency_)
+        throw std::logic_error("SimulatedRig: no such shutter");
+    shutter_ = shutter;
+}
+
+std::deque<SimulatedRig::Command>::const_iterator SimulatedRig::commandAt(Time time) const {
+    const auto later = std::upper_bound(commands_.begin(), commands_.end(), time - latency_,
+                                        [](Time shown, const Command& command) { return shown < command.time; });
+    return later == commands_.begin() ? later : std::prev(later);
+}
+
+std::vector<LitUntil> SimulatedRig::litDuring(Time time) const {
+    std::vector<LitUntil> during;
+    const Time begin = time - latency_;
+    for (auto command = commandAt(time); command != commands_.end(); ++command) {
+        if (!during.empty() && command->time >= begin + shutter_.length())
+            break;
+        if (!during.empty())
+            during.back().until = command->time - begin;
+        during.push_back({command->lit, shutter_.length()});
+    }
+    return during;
 }
 
 void SimulatedRig::light(std::vector<LitModule> lit) {

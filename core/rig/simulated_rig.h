@@ -11,6 +11,7 @@
 #include "core/rig/held_body.h"
 #include "core/rig/held_camera.h"
 #include "core/rig/rig_clock.h"
+#include "core/rig/shutter.h"
 #include "core/rig/touch_field.h"
 #include "core/simulation/world.h"
 
@@ -84,17 +85,24 @@ class SimulatedRig : public QObject {
     void plugCamera();
     [[nodiscard]] bool isCameraPlugged() const { return cameraPlugged_; }
 
-    /// Time between a light command and the first exposure that shows it: 80 ms at first. Throws std::logic_error where
-    /// it is negative.
+    /// Time between a light command and the first picture that shows all of it: 80 ms at first. A picture of time t is
+    /// exposed from t - latency on. Throws std::logic_error where it is shorter than the shutter.
     void setCameraLatency(std::chrono::milliseconds latency);
     [[nodiscard]] std::chrono::milliseconds cameraLatency() const { return latency_; }
+    /// How long pictures are exposed: at first, a moment. With a shutter that takes its time, what changes meanwhile
+    /// shows in part. Throws std::logic_error where it is negative or longer than the latency: pictures come once they
+    /// are exposed. (SimulatedCamera::setExposure makes pictures brighter, and does not ask what changes.)
+    void setShutter(const Shutter& shutter);
+    [[nodiscard]] const Shutter& shutter() const { return shutter_; }
 
     /// What devices ask and tell. Times may lie a little before now: calls come late where the event loop was busy.
     [[nodiscard]] BodyForces forces(Time time) const { return body_.forces(time); }
     [[nodiscard]] Isometry3d cameraPose(Time time) const { return camera_.pose(time); }
     [[nodiscard]] const std::optional<Contact>& contact() const { return contact_; }
-    /// What an exposure at that time shows lit.
-    [[nodiscard]] const std::vector<LitModule>& litAt(Time time) const;
+    /// What a picture of that time shows lit, in the first moment of its exposure; and one after the other while it
+    /// lasts.
+    [[nodiscard]] const std::vector<LitModule>& litAt(Time time) const { return commandAt(time)->lit; }
+    [[nodiscard]] std::vector<LitUntil> litDuring(Time time) const;
     /// These on and all others off, commanded now.
     void light(std::vector<LitModule> lit);
 
@@ -112,6 +120,7 @@ class SimulatedRig : public QObject {
     };
 
     void restCameraAt(Time when);
+    [[nodiscard]] std::deque<Command>::const_iterator commandAt(Time time) const;
 
     std::shared_ptr<const World> world_;
     RigClock clock_;
@@ -124,6 +133,7 @@ class SimulatedRig : public QObject {
     bool skinPlugged_ = true;
     bool cameraPlugged_ = true;
     std::chrono::milliseconds latency_{80};
+    Shutter shutter_;
     std::deque<Command> commands_;  ///< never empty; in the order of time
 };
 

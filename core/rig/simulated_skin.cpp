@@ -229,12 +229,33 @@ std::uint64_t SimulatedSkin::light(const std::vector<LitModule>& lit) {
     ++token_;
     if (isOpen()) {
         rig_->light(lit);
-        at(rig_->now() + kLatch, [this, token = token_] {
-            if (token == token_)
-                emit lightShown(token);
+        acknowledge(token_);
+    }
+    return token_;
+}
+
+std::optional<std::chrono::microseconds> SimulatedSkin::now() const {
+    return rig_ ? std::optional(rig_->now()) : std::nullopt;
+}
+
+std::uint64_t SimulatedSkin::lightAt(const std::vector<LitModule>& lit, std::chrono::microseconds when) {
+    ++token_;
+    if (isOpen()) {
+        at(when, [this, lit, token = token_] {
+            if (token != token_)
+                return;
+            rig_->light(lit);
+            acknowledge(token);
         });
     }
     return token_;
+}
+
+void SimulatedSkin::acknowledge(std::uint64_t token) {
+    at(rig_->now() + kLatch, [this, token] {
+        if (token == token_)
+            emit lightShown(token);
+    });
 }
 
 }  // namespace skincal

@@ -19,7 +19,8 @@ namespace skincal {
 /// - streams give a sample of all modules each 10 ms, fewer where nobody had time for them for more than a second; they
 ///   can't be started while it isn't open. Accelerometers are
 ///   those that simulateGravity reads, each with its own error, on a body that moves (SimulatedRig::turnBody).
-/// - light() is acknowledged after 4 ms, unless a newer command has come by then. It does nothing while not open.
+/// - light() and lightAt() are acknowledged 4 ms after they take effect, unless a newer command has come by then. They
+///   do nothing while it is not open.
 /// - unplugged, it fails and closes. It closes without a word where the rig is destroyed.
 class SimulatedSkin : public SkinDevice {
     Q_OBJECT
@@ -34,6 +35,8 @@ class SimulatedSkin : public SkinDevice {
     void streamAcceleration(bool on) override;
     void streamTactile(bool on) override;
     std::uint64_t light(const std::vector<LitModule>& lit) override;
+    [[nodiscard]] std::optional<std::chrono::microseconds> now() const override;
+    std::uint64_t lightAt(const std::vector<LitModule>& lit, std::chrono::microseconds when) override;
 
     [[nodiscard]] bool isOpen() const { return state_ == State::Open; }
 
@@ -48,6 +51,7 @@ class SimulatedSkin : public SkinDevice {
     void shut();
     void unplugged();
     void findNext(std::uint64_t exploration, Time started, std::size_t position);
+    void acknowledge(std::uint64_t token);
     void tick(Time when, std::uint64_t SimulatedSkin::*run, std::uint64_t started, Stream sample);
     void sampleAcceleration(Time time);
     void sampleTactile(Time time);

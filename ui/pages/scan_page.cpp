@@ -216,11 +216,11 @@ void ScanPage::refresh() {
     if (state.phase == Phase::Decoding) {
         text = tr("Decoding …");
     } else if (state.phase == Phase::Paused) {
-        text = tr("Paused after picture %1 of %2").arg(state.next).arg(state.frames);
+        text = tr("Paused after picture %1 of %2").arg(state.taken()).arg(state.frames);
     } else if (state.isRunning()) {
         const auto& spots = presenter_.spots();
         const auto known = std::count_if(spots.begin(), spots.end(), [](const LiveSpot& spot) { return spot.module; });
-        text = tr("Picture %1 of %2").arg(state.next + 1).arg(state.frames);
+        text = tr("Picture %1 of %2").arg(state.taken() + 1).arg(state.frames);
         if (!spots.empty())
             text += tr(", %n spots", nullptr, static_cast<int>(spots.size())) + tr(", %1 of them known").arg(known);
         if (const auto left = presenter_.timeLeft())

@@ -1,5 +1,9 @@
 #include "ui/presenters/picture_series.h"
 
+#include <algorithm>
+#include <numeric>
+
+#include "core/vision/light_change.h"
 #include "ui/presenters/camera_words.h"
 
 namespace skincal {
@@ -49,9 +53,25 @@ void PictureSeries::start(LitSets lit) {
     pictures_ = std::make_shared<Pictures>(lit_.size());
     frames_.assign(lit_.size(), {});
     began_ = Clock::now();
+    told_ = 0;
     if (workbench_.skin() != nullptr)
         workbench_.skin()->prepare(lit_);
-    handle(scan_run::Start{lit_.size()});
+    handle(scan_run::Start{lit_.size(), toggles()});
+}
+
+scan_run::Toggles PictureSeries::toggles() const {
+    constexpr std::size_t kWorthIt = 8;
+    const auto isSmaller = [](const auto& a, const auto& b) { return a.size() < b.size(); };
+    const FrameSource* camera = workbench_.camera();
+    const SkinDevice* skin = workbench_.skin();
+    if (camera == nullptr || skin == nullptr || lit_.size() < kWorthIt || !lit_[0].empty() ||
+        lit_[1].size() < std::max_element(lit_.begin(), lit_.end(), isSmaller)->size())
+        return scan_run::Toggles::None;
+    // A time that means another to the camera is none.
+    constexpr std::chrono::milliseconds kSame{2};
+    const auto skinsTime = skin->now();
+    const bool isOneClock = skinsTime && std::chrono::abs(*skinsTime - camera->now()) < kSame;
+    return isOneClock ? scan_run::Toggles::GivenTime : scan_run::Toggles::AtOnce;
 }
 
 void PictureSeries::pause() {
@@ -80,27 +100,59 @@ void PictureSeries::finish() {
 double PictureSeries::done() const {
     if (state_.phase == ScanRun::Phase::Decoding || state_.phase == ScanRun::Phase::Done)
         return 1;
-    return state_.frames == 0 ? 0 : static_cast<double>(state_.next) / static_cast<double>(state_.frames);
+    return state_.frames == 0 ? 0 : static_cast<double>(state_.taken()) / static_cast<double>(state_.frames);
 }
 
 std::optional<std::chrono::milliseconds> PictureSeries::timeLeft() const {
-    if (!state_.isRunning() || state_.next == 0)
+    if (!state_.isRunning() || state_.taken() == 0)
         return std::nullopt;
     const auto soFar = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - began_);
-    return soFar * static_cast<int>(state_.frames - state_.next) / static_cast<int>(state_.next);
+    return soFar * static_cast<int>(state_.left.size()) / static_cast<int>(state_.taken());
 }
 
 void PictureSeries::attachCamera() {
     newest_ = {};
     fail(ScanRun::Fault::OtherCamera);
-    connect(workbench_.camera(), &FrameSource::frameArrived, this, [this](const CameraFrame& frame) {
-        newest_ = frame;
-        handle(scan_run::PictureTaken{frame.time});
-    });
+    connect(workbench_.camera(), &FrameSource::frameArrived, this, &PictureSeries::take);
     connect(workbench_.camera(), &FrameSource::failed, this, [this](const QString& why) {
         newest_ = {};
         fail(ScanRun::Fault::CameraFailed, failureWords(*workbench_.camera(), why));
     });
+}
+
+void PictureSeries::take(const CameraFrame& frame) {
+    // One that comes twice shows what was lit before, whatever its time says.
+    const bool isAgain = isSamePicture(frame.image, newest_.image);
+    newest_ = frame;
+    if (!state_.isRunning() || isAgain)
+        return;
+    const bool isCompared = state_.phase == ScanRun::Phase::Timing && !state_.toggles.empty();
+    const double change = isCompared ? lightChange(frame.image, reference_) : 0;
+    handle(scan_run::PictureTaken{frame.time, workbench_.camera()->now(), change});
+}
+
+void PictureSeries::keep(std::size_t frame) {
+    (*pictures_)[frame] = newest_.image;
+    frames_[frame].lit = lit_[frame];
+    frames_[frame].time_s = std::chrono::duration<double>(newest_.time).count();
+    while (told_ < pictures_->size() && !(*pictures_)[told_].empty())
+        emit kept(told_++);
+}
+
+/// Recordings have frames as they were taken; what moves meanwhile, moves on.
+void PictureSeries::sortByTime() {
+    std::vector<std::size_t> order(frames_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return *frames_[a].time_s < *frames_[b].time_s; });
+    auto pictures = std::make_shared<Pictures>();
+    std::vector<FrameInfo> frames;
+    for (const std::size_t k : order) {
+        pictures->push_back((*pictures_)[k]);
+        frames.push_back(std::move(frames_[k]));
+    }
+    pictures_ = std::move(pictures);
+    frames_ = std::move(frames);
 }
 
 void PictureSeries::attachSkin() {
@@ -125,24 +177,25 @@ void PictureSeries::handle(const scan_run::Event& event) {
 }
 
 void PictureSeries::act(const scan_run::Effect& effect) {
+    using Time = ScanRun::Time;
     SkinDevice* skin = workbench_.skin();
     std::visit(
         Overloaded{[&](const scan_run::Light& light) {
-                       const std::uint64_t token = skin->light(lit_[light.frame]);
-                       handle(scan_run::LightCommanded{token});
+                       const auto& lit = lit_[light.frame];
+                       const auto now = workbench_.camera() != nullptr ? workbench_.camera()->now() : Time{};
+                       const std::uint64_t token = light.at ? skin->lightAt(lit, *light.at) : skin->light(lit);
+                       handle(scan_run::LightCommanded{token, now});
                    },
-                   [&](const scan_run::KeepPicture& keep) {
-                       (*pictures_)[keep.frame] = newest_.image;
-                       FrameInfo& frame = frames_[keep.frame];
-                       frame.lit = lit_[keep.frame];
-                       frame.time_s = std::chrono::duration<double>(newest_.time).count();
-                       emit kept(keep.frame);
-                   },
+                   [&](scan_run::TakeReference) { reference_ = newest_.image; },
+                   [&](const scan_run::KeepPicture& picture) { keep(picture.frame); },
                    [&](scan_run::LightsOff) {
                        if (skin != nullptr)
                            skin->light({});
                    },
-                   [&](scan_run::Decode) { emit complete(); },
+                   [&](scan_run::Decode) {
+                       sortByTime();
+                       emit complete();
+                   },
                    [&](scan_run::Discard) {
                        pictures_.reset();
                        emit discarded();

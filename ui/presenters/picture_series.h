@@ -18,7 +18,8 @@ namespace skincal {
 [[nodiscard]] QString sentenceOf(const ScanRun& run, const QString& words);
 
 /// Takes a picture of each of a list of lit sets, with the skin and the camera that are on the workbench; the camera
-/// must run meanwhile. What either of them does wrong ends it.
+/// must run meanwhile. What either of them does wrong ends it. Where the first set is dark and the second has all LEDs
+/// of the list, as codedScan() has them, light is timed and pictures come at the camera's rate (ScanRun).
 class PictureSeries : public QObject {
     Q_OBJECT
   public:
@@ -40,7 +41,8 @@ class PictureSeries : public QObject {
     [[nodiscard]] bool isBusy() const { return needsCamera() || state_.phase == ScanRun::Phase::Decoding; }
     [[nodiscard]] bool needsCamera() const { return state_.isRunning() || state_.phase == ScanRun::Phase::Paused; }
     [[nodiscard]] const LitSets& lit() const { return lit_; }
-    /// Those that are taken so far, one entry per lit set; null before the first start and after a failure.
+    /// Those that are taken so far, one entry per lit set; null before the first start and after a failure. Once it is
+    /// complete, in the order in which they were taken.
     [[nodiscard]] std::shared_ptr<const Pictures> pictures() const { return pictures_; }
     [[nodiscard]] const std::vector<FrameInfo>& frames() const { return frames_; }
 
@@ -52,6 +54,7 @@ class PictureSeries : public QObject {
     /// Before the first light and after the last.
     void runningChanged(bool running);
     void stateChanged();
+    /// There is a picture of this lit set and of all before it: each once, in the order of the list.
     void kept(std::size_t frame);
     /// All pictures are there: finish() or fail() is to follow.
     void complete();
@@ -61,6 +64,10 @@ class PictureSeries : public QObject {
   private:
     void attachCamera();
     void attachSkin();
+    void take(const CameraFrame& frame);
+    void keep(std::size_t frame);
+    void sortByTime();
+    [[nodiscard]] scan_run::Toggles toggles() const;
     void handle(const scan_run::Event& event);
     void act(const scan_run::Effect& effect);
 
@@ -72,7 +79,9 @@ class PictureSeries : public QObject {
     LitSets lit_;
     std::shared_ptr<Pictures> pictures_;
     std::vector<FrameInfo> frames_;
+    std::size_t told_ = 0;  ///< by kept()
     CameraFrame newest_;
+    cv::Mat reference_;
     Clock::time_point began_;
     QString words_;  ///< of who failed last
 };

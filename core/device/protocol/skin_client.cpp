@@ -305,14 +305,14 @@ void SkinClient::prepare(std::vector<std::vector<LitCell>> sets) {
     wordsTold_ = false;
 }
 
-void SkinClient::light(const std::vector<LitCell>& lit, std::uint64_t token, Time now) {
+void SkinClient::light(const std::vector<LitCell>& lit, std::uint64_t token, Time now, std::optional<Time> when) {
     if (phase_ != Phase::Explored)
         return;
     if (!wordsTold_)
         for (Message& message : words_.messages(cells_))
             send(std::move(message));
     wordsTold_ = true;
-    shown_ = Shown{token, lit, ++pattern_, 0, 0, 0, now};
+    shown_ = Shown{token, lit, ++pattern_, 0, 0, 0, now, when};
     showAgain(now);
 }
 
@@ -326,11 +326,17 @@ void SkinClient::showAgain(Time now) {
     if (shown_->tries > 0 && words_.find(shown_->lit))
         for (Message& message : words_.messages(cells_))
             send(std::move(message));
-    for (Message& message : patternMessages(shown_->lit, cells_, shown_->number, words_))
+    // What is over is at once; and 0 means that, too.
+    const bool isLater = shown_->when && *shown_->when > now;
+    for (Message& message : patternMessages(shown_->lit, cells_, shown_->number, words_)) {
+        if (isLater && message.header.type == FrameType::Pattern)
+            message.header.time_us = std::max(1U, static_cast<std::uint32_t>(shown_->when->count()));
         send(std::move(message));
+    }
     shown_->query = ++query_;
     ++shown_->tries;
-    shown_->due = now + (kTally + static_cast<Time::rep>(cells_) * kTallyEach) * shown_->tries;
+    shown_->due =
+        (isLater ? *shown_->when : now) + (kTally + static_cast<Time::rep>(cells_) * kTallyEach) * shown_->tries;
     wire::Tally tally;
     tally.set_query(shown_->query);
     tally.set_pattern(shown_->number);

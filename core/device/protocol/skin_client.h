@@ -47,7 +47,8 @@ class SkinClient {
     /// Lights these and no others: onShown() or onNotShown(), unless a newer one overtakes it.
     /// @param lit    by rising number, each once
     /// @param token  handed back
-    void light(const std::vector<LitCell>& lit, std::uint64_t token, Time now);
+    /// @param when   they are lit then, or at once where cells hear of it later
+    void light(const std::vector<LitCell>& lit, std::uint64_t token, Time now, std::optional<Time> when = {});
 
     /// Averages all accelerometers over so long: onRest().
     void measureRest(std::chrono::milliseconds period, Time now);
@@ -70,6 +71,7 @@ class SkinClient {
         int tries = 0;
         std::size_t most = 0;  ///< that have shown it, of any tally
         Time due{};
+        std::optional<Time> when{};
     };
 
     void take(const FrameHeader& header, std::string_view payload, Time now);

@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <QSignalSpy>
+#include <iostream>
 #include <set>
 
-#include "tests/wait_for.h"
+#include "tests/ui/presenters/desk.h"
 
 namespace skincal {
 namespace {
@@ -74,6 +75,122 @@ TEST(PictureSeries, KeepsNoPictureThatWasExposedBeforeItsLightShowed) {
     EXPECT_TRUE(series.isBusy());
     series.finish();
     EXPECT_FALSE(series.isBusy());
+}
+
+/// Takes all pictures of a coded scan and looks whether each shows its pattern, and nothing of another.
+class TimedSeries {
+  public:
+    explicit TimedSeries(const char* scenario, std::uint64_t seed = 1) : desk(*findScenario(scenario), seed) {
+        EXPECT_TRUE(desk.connectSkin());
+        EXPECT_TRUE(desk.startCamera());
+        series = std::make_unique<PictureSeries>(desk.workbench);
+        QObject::connect(desk.workbench.camera(), &FrameSource::frameArrived, series.get(), [this] {
+            if (series->state().phase == ScanRun::Phase::Streaming)
+                periods = series->state().plan->periods;
+        });
+        QObject::connect(series.get(), &PictureSeries::kept, series.get(),
+                         [this](std::size_t k) { order.push_back(k); });
+    }
+    /// How long it takes by the rig's clock; nothing where it fails.
+    [[nodiscard]] std::optional<Time> take(std::uint64_t words) {
+        std::vector<ModuleId> modules;
+        for (const SkinModule& module : desk.rig.world().skin.modules)
+            modules.push_back(module.id);
+        const Time began = desk.rig.now();
+        order.clear();
+        periods = 0;
+        series->start(codedScan(modules, words));
+        const auto phase = [&] { return series->state().phase; };
+        if (!test::waitFor([&] { return !series->state().isRunning(); }) || phase() != ScanRun::Phase::Decoding)
+            return std::nullopt;
+        const Time took = desk.rig.now() - began;
+        frames = series->frames();
+        pictures = series->pictures();
+        for (const FrameInfo& frame : frames) {
+            const auto time = std::chrono::round<Time>(std::chrono::duration<double>(*frame.time_s));
+            const auto during = desk.rig.litDuring(time);
+            wrong += during.size() == 1 && sameLit(during.front().lit, frame.lit) ? 0 : 1;
+        }
+        series->finish();
+        return took;
+    }
+
+    test::Desk desk;
+    std::unique_ptr<PictureSeries> series;
+    int wrong = 0;
+    int periods = 0;
+    std::vector<std::size_t> order;
+    std::vector<FrameInfo> frames;
+    std::shared_ptr<const Pictures> pictures;
+
+  private:
+    static bool sameLit(const std::vector<LitModule>& a, const std::vector<LitModule>& b) {
+        return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                          [](const LitModule& x, const LitModule& y) { return x.module == y.module; });
+    }
+};
+
+TEST(PictureSeries, TakesThreeSecondsForAThousandModules) {
+    TimedSeries timed("thousand");
+    const auto took = timed.take(0);
+    ASSERT_TRUE(took);
+    EXPECT_EQ(timed.frames.size(), 32U);
+    EXPECT_EQ(timed.wrong, 0);
+    EXPECT_EQ(timed.periods, 2);
+    EXPECT_LE(*took, 3s);
+    std::cout << "32 pictures of 1,000 modules in " << *took / 1ms << " ms of the camera's time\n";
+}
+
+TEST(PictureSeries, TakesNoPictureForAnotherWhateverTheCameraIsLike) {
+    Random random(1, "cameras");
+    TimedSeries timed("coded");
+    auto& camera = static_cast<SimulatedCamera&>(*timed.desk.workbench.camera());
+    for (int run = 0; run < 12; ++run) {
+        const auto ms = [&](int low, int high) {
+            return std::chrono::milliseconds(low +
+                                             static_cast<int>(random.index(static_cast<std::size_t>(high - low))));
+        };
+        timed.desk.rig.setShutter({});
+        timed.desk.rig.setCameraLatency(ms(20, 250));
+        const auto longest = static_cast<int>(std::min<Time>(timed.desk.rig.cameraLatency(), 50ms) / 1ms);
+        const auto length = ms(1, longest);
+        const auto open = ms(0, static_cast<int>(length.count()));
+        timed.desk.rig.setShutter({open, length - open});
+        camera.setLosses(run % 2 == 0 ? 0 : 0.05, run % 3 == 0 ? 0 : 0.05);
+        // Another latency is another camera: what the last one saw is over.
+        pass(timed.desk.rig.clock(), 500ms);
+        const auto took = timed.take(static_cast<std::uint64_t>(run));
+        ASSERT_TRUE(took) << run;
+        EXPECT_GE(timed.periods, 2) << "it was light that could not be timed";
+        EXPECT_EQ(timed.wrong, 0) << run;
+        // Live spots need them in order, recordings as they were taken.
+        EXPECT_TRUE(std::is_sorted(timed.order.begin(), timed.order.end()));
+        EXPECT_EQ(timed.order.size(), timed.frames.size());
+        for (std::size_t k = 1; k < timed.frames.size(); ++k)
+            EXPECT_LT(*timed.frames[k - 1].time_s, *timed.frames[k].time_s);
+        // What was repeated shows by its pixels alone.
+        const World& world = timed.desk.rig.world();
+        for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+            const auto pixel = visiblePixel(world, 0, u);
+            if (!pixel)
+                continue;
+            const cv::Point place(cvRound(pixel->x()), cvRound(pixel->y()));
+            int dimmest = 255;
+            int brightest = 0;
+            for (std::size_t k = 0; k < timed.frames.size(); ++k) {
+                const auto& lit = timed.frames[k].lit;
+                const bool on = std::any_of(lit.begin(), lit.end(), [&](const LitModule& one) {
+                    return one.module == world.skin.modules[u].id;
+                });
+                const int level = (*timed.pictures)[k].at<unsigned char>(place);
+                if (on)
+                    dimmest = std::min(dimmest, level);
+                else
+                    brightest = std::max(brightest, level);
+            }
+            EXPECT_GT(dimmest, brightest + 10) << run;
+        }
+    }
 }
 
 TEST(PictureSeries, HasASentenceForEveryFault) {

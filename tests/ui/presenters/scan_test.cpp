@@ -18,7 +18,7 @@ void when(Desk& desk, Phase phase, std::size_t frame, std::function<void()> what
     auto done = std::make_shared<bool>(false);
     QObject::connect(&desk.scan, &ScanPresenter::stateChanged, &desk.scan, [&desk, phase, frame, what, done] {
         const ScanRun& run = desk.scan.state();
-        if (!*done && run.phase == phase && run.next >= frame) {
+        if (!*done && run.phase == phase && run.taken() >= frame) {
             *done = true;
             what();
         }
@@ -88,25 +88,32 @@ TEST(ScanPresenter, CancelledInAnyPhaseItLeavesNothingBehind) {
     ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
     const std::uint64_t revision = desk.session().revision();
     const std::size_t last = desk.scan.picturesOfAScan() - 1;
-    for (const auto& [phase, frame] : std::vector<std::pair<Phase, std::size_t>>{{Phase::Lighting, 0},
-                                                                                 {Phase::Lighting, 3},
-                                                                                 {Phase::Settling, 0},
-                                                                                 {Phase::Settling, last},
-                                                                                 {Phase::Decoding, 0}}) {
+    const auto cancelIn = [&](Phase phase, std::size_t frame) {
         bool isCancelled = false;
         when(desk, phase, frame, [&] {
             isCancelled = true;
             desk.scan.cancel();
         });
         desk.scan.start();
-        ASSERT_TRUE(waitFor([&] { return isCancelled; }));
+        ASSERT_TRUE(waitFor([&] { return isCancelled || !desk.isScanning(); }));
+        ASSERT_TRUE(isCancelled);
         EXPECT_EQ(desk.scan.state().phase, Phase::Idle);
         pass(desk.rig.clock(), 3s);
         EXPECT_EQ(desk.scan.state().phase, Phase::Idle);
         EXPECT_TRUE(desk.isDark());
         EXPECT_TRUE(desk.session().measured().views.empty());
         EXPECT_EQ(desk.session().revision(), revision);
-    }
+    };
+    cancelIn(Phase::Timing, 0);
+    cancelIn(Phase::Timing, 1);
+    cancelIn(Phase::Streaming, 2);
+    cancelIn(Phase::Streaming, last);
+    cancelIn(Phase::Decoding, 0);
+    // A camera so late that light can't be timed.
+    desk.rig.setCameraLatency(5s);
+    cancelIn(Phase::Lighting, 0);
+    cancelIn(Phase::Settling, 3);
+    desk.rig.setCameraLatency(80ms);
     ASSERT_TRUE(desk.scanHere()) << "and the next one goes through";
     expectSpotsNearTruth(desk, desk.session().measured().views.back());
 }
@@ -114,14 +121,15 @@ TEST(ScanPresenter, CancelledInAnyPhaseItLeavesNothingBehind) {
 TEST(ScanPresenter, PausesAndGoesOn) {
     Desk desk;
     ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
-    when(desk, Phase::Settling, 2, [&] { desk.scan.pause(); });
+    when(desk, Phase::Streaming, 5, [&] { desk.scan.pause(); });
     desk.scan.start();
     ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == Phase::Paused; }));
+    const std::size_t taken = desk.scan.state().taken();
     // Elsewhere meanwhile: the camera is still needed.
     desk.scan.setActive(false);
     pass(desk.rig.clock(), 5s);
     EXPECT_EQ(desk.scan.state().phase, Phase::Paused);
-    EXPECT_EQ(desk.scan.state().next, 2U);
+    EXPECT_EQ(desk.scan.state().taken(), taken);
     EXPECT_TRUE(desk.isDark());
     desk.scan.resume();
     ASSERT_TRUE(waitFor([&] { return !desk.isScanning(); }));
@@ -130,7 +138,7 @@ TEST(ScanPresenter, PausesAndGoesOn) {
 
     desk.scan.setActive(true);
     ASSERT_TRUE(waitFor([&] { return desk.scan.obstacle().isEmpty(); }));
-    when(desk, Phase::Settling, 2, [&] { desk.scan.pause(); });
+    when(desk, Phase::Streaming, 2, [&] { desk.scan.pause(); });
     desk.scan.start();
     ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == Phase::Paused; }));
     desk.scan.setActive(false);
@@ -141,12 +149,12 @@ TEST(ScanPresenter, PausesAndGoesOn) {
 }
 
 TEST(ScanPresenter, FailsWithAReasonWhereSomethingIsPulled) {
-    for (const Phase phase : {Phase::Lighting, Phase::Settling, Phase::Paused}) {
+    for (const Phase phase : {Phase::Timing, Phase::Streaming, Phase::Paused}) {
         for (const bool isSkin : {true, false}) {
             Desk desk;
             ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
             const QSignalSpy cameraFailed(&desk.scan, &ScanPresenter::cameraFailed);
-            when(desk, phase == Phase::Paused ? Phase::Settling : phase, 2, [&] {
+            when(desk, phase == Phase::Paused ? Phase::Streaming : phase, phase == Phase::Timing ? 1 : 2, [&] {
                 if (phase == Phase::Paused)
                     desk.scan.pause();
                 isSkin ? desk.rig.pullSkin() : desk.rig.pullCamera();
@@ -173,7 +181,7 @@ TEST(ScanPresenter, FailsWithAReasonWhereSomethingIsPulled) {
 TEST(ScanPresenter, BreaksOffWhereCameraOrSkinBecomesAnother) {
     Desk desk;
     ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
-    when(desk, Phase::Settling, 2, [&] {
+    when(desk, Phase::Streaming, 2, [&] {
         QMetaObject::invokeMethod(
             &desk.workbench, [&] { desk.workbench.chooseCamera(1); }, Qt::QueuedConnection);
     });
@@ -196,7 +204,7 @@ TEST(ScanPresenter, NobodyBlinksDuringAScan) {
     ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
     const QSignalSpy blinking(&desk.connection, &ConnectPresenter::blinking);
     const ModuleId module = desk.rig.world().skin.modules.front().id;
-    when(desk, Phase::Settling, 2, [&] { desk.connection.blink(module); });
+    when(desk, Phase::Streaming, 2, [&] { desk.connection.blink(module); });
     ASSERT_TRUE(desk.scanHere());
     EXPECT_EQ(blinking.count(), 0);
     expectSpotsNearTruth(desk, desk.session().measured().views.back());
@@ -229,7 +237,7 @@ TEST(ScanPresenter, ScansAViewAgainInItsPlace) {
 TEST(ScanPresenter, SaysHowFarTheCameraMoved) {
     Desk desk;
     ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
-    when(desk, Phase::Settling, desk.scan.picturesOfAScan() / 2, [&] { desk.rig.knockCamera(8); });
+    when(desk, Phase::Streaming, desk.scan.picturesOfAScan() / 2, [&] { desk.rig.knockCamera(8); });
     double moved = -1;
     QObject::connect(&desk.scan, &ScanPresenter::scanned, &desk.scan,
                      [&](const std::string&, double moved_px, std::size_t) { moved = moved_px; });

@@ -100,7 +100,7 @@ TEST_F(WebcamScan, IsBrokenOffByAnUnpluggedCameraAndDoneOnceItIsBack) {
     ASSERT_TRUE(desk.connectSkin());
     ASSERT_TRUE(useWebcam());
     desk.scan.start();
-    ASSERT_TRUE(waitFor([&] { return desk.scan.state().next >= 3; }));
+    ASSERT_TRUE(waitFor([&] { return desk.scan.state().taken() >= 3; }));
     webcam->unplug();
     ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == ScanRun::Phase::Failed; }));
     EXPECT_THAT(desk.scan.why().toStdString(), testing::HasSubstr("plug it in again"));

@@ -125,6 +125,20 @@ TEST_F(AProtocolSkin, LightsWhatIsAskedForAndSaysWhenItShows) {
     EXPECT_EQ(rig.litAt(RigClock::Time::max()).front().colour, (std::array{1, 0, 0}));
 }
 
+TEST_F(AProtocolSkin, LightsAtAGivenTime) {
+    openIt();
+    exploreIt();
+    ASSERT_TRUE(light({}));
+    for (int k = 0; k < 5; ++k) {
+        const std::vector<LitModule> one{{explored.modules[static_cast<std::size_t>(k)].id, std::nullopt}};
+        const auto when = *device.now() + std::chrono::milliseconds(200);
+        const std::uint64_t token = device.lightAt(one, when);
+        ASSERT_TRUE(waitFor([&] { return shown == token; }));
+        EXPECT_GE(*device.now() + std::chrono::milliseconds(20), when) << "the cells' clocks are nearly the computer's";
+        EXPECT_EQ(shining(), std::set{one.front().module});
+    }
+}
+
 TEST_F(AProtocolSkin, StreamsGravityAndTouchOfEveryModule) {
     openIt();
     exploreIt();

@@ -22,20 +22,36 @@ using Fault = ScanRun::Fault;
 constexpr StartTimer kLightTimer{500ms};
 constexpr StartTimer kPictureTimer{1100ms};
 
-/// The second of three frames, lit by command 7.
+ScanRun finished(ScanRun state) {
+    if (state.phase == Phase::Failed)
+        state.fault = Fault::OtherCamera;
+    return state;
+}
+
+/// The second of three frames, lit by command 7; in Timing all of them.
 ScanRun stateIn(Phase phase) {
     ScanRun state;
     state.phase = phase;
     if (phase == Idle)
         return state;
+    const bool isWhole = phase == Decoding || phase == Done;
     state.frames = 3;
-    state.next = phase == Decoding || phase == Done ? 3 : 1;
+    state.left = isWhole ? std::vector<std::size_t>() : std::vector<std::size_t>{1, 2};
     state.token = 7;
-    state.repeats = phase == Decoding || phase == Done ? 0 : 1;
+    state.isAnswered = phase == Settling;
+    state.repeats = isWhole ? 0 : 1;
     state.showsFrom = 1s;
-    if (phase == Phase::Failed)
-        state.fault = Fault::OtherCamera;
-    return state;
+    state.newest = 890ms;
+    state.isTimed = phase == Timing || phase == Streaming;
+    state.keepsTime = true;
+    if (phase == Timing)
+        state.toggles = {{900ms, {}, {{880ms, 0}}}};
+    if (phase != Streaming)
+        return finished(state);
+    state.plan = LightPlan{33ms, 2, 90ms, 70ms, 110ms};
+    state.shows = {{1, 900ms, {}}};
+    state.queue = {2};
+    return finished(state);
 }
 
 TEST(ScanRun, DoesWhatTheTableSays) {
@@ -53,6 +69,28 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Idle, Decoded{}, kNothing, none},
         {Idle, scan_run::Failed{Fault::SkinGone}, kNothing, none},
         {Idle, TimedOut{}, kNothing, none},
+
+        {Timing, Start{3}, kNothing, none},
+        {Timing, LightCommanded{8}, Timing, none},
+        {Timing, LightShown{7, 1s}, Timing, {StartTimer{1000ms}}},
+        {Timing, PictureTaken{2s}, Timing, none},
+        {Timing, Pause{}, Paused, {StopTimer{}, LightsOff{}}},
+        {Timing, Resume{}, kNothing, none},
+        {Timing, Cancel{}, Idle, stops},
+        {Timing, Decoded{}, kNothing, none},
+        {Timing, scan_run::Failed{Fault::SkinGone}, Broken, stops},
+        {Timing, TimedOut{}, Timing, {Light{0}, kLightTimer}},
+
+        {Streaming, Start{3}, kNothing, none},
+        {Streaming, LightCommanded{8}, Streaming, none},
+        {Streaming, LightShown{7, 897ms}, Streaming, {StartTimer{1000ms}, Light{2, 978ms}, StartTimer{581ms}}},
+        {Streaming, PictureTaken{2s}, Streaming, none},
+        {Streaming, Pause{}, Paused, {StopTimer{}, LightsOff{}}},
+        {Streaming, Resume{}, kNothing, none},
+        {Streaming, Cancel{}, Idle, stops},
+        {Streaming, Decoded{}, kNothing, none},
+        {Streaming, scan_run::Failed{Fault::SkinGone}, Broken, stops},
+        {Streaming, TimedOut{}, Streaming, {StartTimer{1000ms}}},
 
         {Lighting, Start{3}, kNothing, none},
         {Lighting, LightCommanded{8}, Lighting, none},
@@ -162,7 +200,7 @@ TEST(ScanRun, KeepsNoPictureExposedBeforeTheLightShows) {
 
 TEST(ScanRun, DecodesAfterTheLastPicture) {
     ScanRun state = stateIn(Settling);
-    state.next = 2;
+    state.left = {2};
     const auto next = step(state, PictureTaken{2s});
     EXPECT_EQ(next.state.phase, Decoding);
     EXPECT_TRUE((next.effects == std::vector<Effect>{KeepPicture{2}, StopTimer{}, LightsOff{}, Decode{}}));
@@ -243,7 +281,7 @@ struct Bench {
         EXPECT_EQ(isTimed, state.isRunning()) << "hangs, or a timer goes on";
         EXPECT_EQ(isOn, state.isRunning()) << "lights left on, or off while it takes pictures";
         if (state.isRunning()) {
-            EXPECT_EQ(lit, state.next);
+            EXPECT_EQ(lit, state.left.front());
         }
         if (state.phase == Idle || state.phase == Phase::Failed) {
             EXPECT_FALSE(isHolding) << "not discarded";
@@ -265,6 +303,7 @@ struct Bench {
         EXPECT_TRUE(next.effects.empty());
         state = next.state;
     }
+    void carryOut(const TakeReference&, const Event&) { FAIL() << "nothing is timed"; }
     void carryOut(const LightsOff&, const Event&) {
         ++token;
         isOn = false;
@@ -318,7 +357,7 @@ Event randomEvent(Random& random, const Bench& bench, Time now) {
 
 TEST(ScanRun, HoldsItsPromisesWhateverComes) {
     Random random(1, "scans");
-    std::array<int, 7> visits{};
+    std::array<int, 9> visits{};
     for (int run = 0; run < 3000; ++run) {
         Bench bench;
         bench.options.settle = std::chrono::milliseconds(random.index(200));
@@ -341,8 +380,8 @@ TEST(ScanRun, HoldsItsPromisesWhateverComes) {
             bench.send(TimedOut{});
         }
     }
-    for (const int visit : visits)
-        EXPECT_GT(visit, 1000);
+    for (const Phase phase : {Idle, Lighting, Settling, Paused, Decoding, Done, Phase::Failed})
+        EXPECT_GT(visits.at(static_cast<std::size_t>(phase)), 1000);
 }
 
 TEST(ScanRun, FromAnywhereItCanBeFinished) {
@@ -354,7 +393,7 @@ TEST(ScanRun, FromAnywhereItCanBeFinished) {
             bench.send(randomEvent(random, bench, now += 50ms));
         bench.send(Resume{});
         bench.send(Start{1 + random.index(8)});
-        const std::size_t left = bench.state.frames - bench.state.next;
+        const std::size_t left = bench.state.left.size();
         for (std::size_t i = 0; i < left; ++i) {
             bench.send(LightShown{bench.token, now += 10ms});
             bench.send(PictureTaken{now += bench.options.settle});

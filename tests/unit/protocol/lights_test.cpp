@@ -132,6 +132,30 @@ TEST(Lights, ANewerPatternOvertakesAnOlder) {
     EXPECT_EQ(lit.showing(), expected({{2, 7}}));
 }
 
+TEST(Lights, AreLitAtTheTimeThatTheyAreToldAndAcknowledgedThen) {
+    for (const double lost : {0.0, 0.05}) {
+        WireFaults faults;
+        faults.lostFrames = lost;
+        Lit lit(6, faults);
+        std::mt19937 random(6);
+        int inTime = 0;
+        for (std::uint64_t k = 0; k < 50; ++k) {
+            const auto before = lit.showing();
+            const auto set = some(random, lit.line.client.cells(), 50, false);
+            const auto when = lit.line.network.now() + 40ms;
+            lit.line.client.light(set, 1000 + k, lit.line.network.now(), when);
+            lit.line.runFor(38ms);
+            EXPECT_EQ(lit.showing(), before);
+            EXPECT_NE(lit.line.notes.shown, 1000 + k);
+            lit.line.runFor(4ms);
+            inTime += lit.showing() == expected(set) ? 1 : 0;
+            ASSERT_TRUE(lit.line.runUntil([&] { return lit.line.notes.shown == 1000 + k; }, 20s));
+            EXPECT_EQ(lit.showing(), expected(set));
+        }
+        EXPECT_GE(inTime, lost == 0 ? 50 : 1);
+    }
+}
+
 TEST(Lights, WordsHaveAtMost64Bits) {
     EXPECT_THROW(LedWords(std::vector<std::vector<LitCell>>(65), 1), std::logic_error);
     EXPECT_NO_THROW(LedWords(std::vector<std::vector<LitCell>>(64), 1));

@@ -126,6 +126,61 @@ TEST_F(ASimulatedCamera, ShowsCommandAfterCommandEachInItsTime) {
     }
 }
 
+TEST_F(ASimulatedCamera, ShowsInPartWhatChangesWhileItsShutterIsOpen) {
+    const auto [module, place] = aVisibleLed();
+    const FrameRenderer renderer(rig.world(), 0, 1000);
+    const std::vector<LitModule> lit{{module, std::nullopt}};
+    EXPECT_THROW(rig.setShutter({-1ms, 5ms}), std::logic_error);
+    EXPECT_THROW(rig.setShutter({50ms, 31ms}), std::logic_error) << "pictures come once they are exposed";
+    Random random(1, "shutters");
+    camera.start();
+    for (int run = 0; run < 12; ++run) {
+        const Shutter shutter{std::chrono::milliseconds(random.index(30)), std::chrono::milliseconds(random.index(40))};
+        rig.setShutter(shutter);
+        EXPECT_THROW(rig.setCameraLatency(std::chrono::floor<std::chrono::milliseconds>(shutter.length()) - 1ms),
+                     std::logic_error);
+        frames.clear();
+        pass(rig.clock(), RigClock::Time(static_cast<RigClock::Time::rep>(random.index(33'000))));
+        const auto commanded = rig.now();
+        skin.light(lit);
+        pass(rig.clock(), 300ms);
+        bool isMixed = false;
+        for (const CameraFrame& frame : frames) {
+            const auto begin = frame.time - 80ms + shutter.readout * place.y / frame.image.rows;
+            const auto off =
+                std::clamp<RigClock::Time>(commanded - begin, 0us, std::max<RigClock::Time>(shutter.open, 1us));
+            const double share = 1 - static_cast<double>(off.count()) /
+                                         static_cast<double>(std::max<RigClock::Time>(shutter.open, 1us).count());
+            const std::size_t k = frame.sequence % 510;
+            const double dark = renderer.render({}, k).at<unsigned char>(place);
+            const double bright = renderer.render(lit, k).at<unsigned char>(place);
+            EXPECT_NEAR(frame.image.at<unsigned char>(place), dark + share * (bright - dark), 1);
+            isMixed = isMixed || (share > 0 && share < 1);
+            EXPECT_EQ(rig.litDuring(frame.time).size() > 1,
+                      frame.time - 80ms < commanded && commanded < frame.time - 80ms + shutter.length());
+        }
+        EXPECT_TRUE(!isMixed || shutter.open > 0ms);
+        skin.light({});
+        pass(rig.clock(), 300ms);
+    }
+}
+
+TEST_F(ASimulatedCamera, DropsAndRepeatsAsManyPicturesAsItIsTold) {
+    EXPECT_THROW(camera.setLosses(-0.1, 0), std::logic_error);
+    EXPECT_THROW(camera.setLosses(0.6, 0.5), std::logic_error);
+    camera.setLosses(0.2, 0.1);
+    camera.start();
+    pass(rig.clock(), 10s);
+    std::size_t repeated = 0;
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        EXPECT_GT(frames[i].time, frames[i - 1].time);
+        repeated += difference(frames[i].image, frames[i - 1].image) == 0 ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(frames.size()), 240, 25);
+    EXPECT_NEAR(static_cast<double>(repeated), 30, 15);
+    EXPECT_GT(frames.back().sequence, 295U);
+}
+
 TEST_F(ASimulatedCamera, MovedItShowsTheNewPlace) {
     const QSignalSpy rested(&rig, &SimulatedRig::cameraRested);
     EXPECT_EQ(rig.cameraPose().matrix(), rig.suggestedViews()[0].matrix());

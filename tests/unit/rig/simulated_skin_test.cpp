@@ -185,6 +185,34 @@ TEST_F(ASimulatedSkin, AcknowledgesTheNewestCommand) {
     EXPECT_EQ(argument<std::uint64_t>(shown, 1), last);
 }
 
+TEST_F(ASimulatedSkin, LightsAtAGivenTimeWhatNoNewerCommandOvertakes) {
+    rig.setCameraLatency(0ms);
+    const std::vector<LitModule> lit{{rig.world().skin.modules[2].id, std::nullopt}};
+    skin.lightAt(lit, rig.now());
+    pass(rig.clock(), 10ms);
+    EXPECT_TRUE(rig.litAt(rig.now()).empty()) << "it is not open";
+    openIt();
+    EXPECT_EQ(skin.now(), rig.now());
+    const QSignalSpy shown(&skin, &SkinDevice::lightShown);
+    const auto when = rig.now() + 50ms;
+    const auto token = skin.lightAt(lit, when);
+    pass(rig.clock(), 53ms);
+    EXPECT_TRUE(rig.litAt(when - 1us).empty());
+    EXPECT_EQ(rig.litAt(when).size(), 1U);
+    EXPECT_EQ(shown.count(), 0);
+    pass(rig.clock(), 2ms);
+    ASSERT_EQ(shown.count(), 1);
+    EXPECT_EQ(argument<std::uint64_t>(shown, 0), token);
+    // What is over is at once.
+    skin.lightAt({}, rig.now() - 1s);
+    pass(rig.clock(), 1ms);
+    EXPECT_TRUE(rig.litAt(rig.now()).empty());
+    skin.lightAt(lit, rig.now() + 50ms);
+    skin.light({});
+    pass(rig.clock(), 1s);
+    EXPECT_TRUE(rig.litAt(rig.now()).empty());
+}
+
 TEST_F(ASimulatedSkin, ClosedItsLedsAreDark) {
     openIt();
     skin.light({{rig.world().skin.modules[2].id, std::nullopt}});

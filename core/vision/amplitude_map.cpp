@@ -4,11 +4,34 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/vision/spot_series.h"
+
 namespace skincal {
 namespace {
 
 /// Ground follows its surroundings by a share of what they do; skin and boards differ by half from what is around them.
 constexpr double kMostShare = 0.5;
+
+/// True where the surroundings do no more than noise does, and than the words shine on them. To let a spot follow them
+/// would cost much where its own light reaches that far, and gain nothing.
+bool areSteady(const Codebook& codebook, const LightFilter& filter, const Ambient& ambient) {
+    const Eigen::MatrixXd X = designMatrix(codebook, filter.words);
+    const auto inverse = inverseNormalMatrix(X, filter.used, codebook);
+    if (!inverse)
+        return false;
+    Eigen::VectorXd light = centred(ambient, filter.used).light;
+    double freedom = -static_cast<double>(X.cols());
+    for (std::size_t k = 0; k < filter.used.size(); ++k) {
+        if (filter.used[k] == 0)
+            light[static_cast<Eigen::Index>(k)] = 0;
+        else
+            ++freedom;
+    }
+    // What is left of a least-squares fit, over the used planes: a^2 - (X^T a)^T N^-1 (X^T a).
+    const Eigen::VectorXd moment = X.transpose() * light;
+    const double left = light.squaredNorm() - moment.dot(*inverse * moment);
+    return left <= filter.sigma * filter.sigma * std::max(1.0, freedom);
+}
 
 }  // namespace
 
@@ -28,12 +51,15 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
                            LightFilter filter)
     : rect_(cv::Rect(spot.x - radius, spot.y - radius, 2 * radius + 1, 2 * radius + 1) &
             cv::Rect(0, 0, picture.width, picture.height)),
+      radius_(radius),
       filter_(std::move(filter)),
       lit_(codebook.planes(), 0) {
     if (filter_.used.size() != codebook.planes() || filter_.gains.size() != codebook.planes() ||
         filter_.around.size() != static_cast<Eigen::Index>(codebook.planes()))
         throw std::logic_error("AmplitudeMap: the filter does not belong to this codebook");
-    const Ambient ambient = ambientOf(codebook, filter_.around, filter_.gains, filter_.sigma);
+    Ambient ambient = ambientOf(codebook, filter_.around, filter_.gains, filter_.sigma);
+    if (ambient.light.size() > 0 && areSteady(codebook, filter_, ambient))
+        ambient = {};
     Eigen::MatrixXd weights;
     while (weights.size() == 0) {
         if (filter_.words.empty())
@@ -45,11 +71,15 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
     weights_ = weights.row(0).cast<float>();
     for (const std::size_t plane : codebook.lit[filter_.words.front()])
         lit_[plane] = 1;
-    const Image zero = Image::Zero(rect_.height, rect_.width);
-    value_ = variance_ = clippedLit_ = clippedDark_ = zero;
+    const Image zero = Image::Zero(rect_.width, rect_.height);
+    value_ = zero;
+    variance_ = zero;
     if (filter_.clipped) {
+        clippedLit_ = zero;
+        clippedDark_ = zero;
         space_ = explainedSpace(codebook, filter_.words, filter_.used, ambient).cast<float>();
-        squares_ = noise_ = zero;
+        squares_ = zero;
+        noise_ = zero;
         moments_.assign(static_cast<std::size_t>(space_.cols()), zero);
     }
 }
@@ -61,52 +91,64 @@ void AmplitudeMap::add(const FramePixels& frame, std::size_t plane, int channel,
     const auto gain = static_cast<float>(filter_.gains[plane]);
     const float weight = weights_[at] / gain;
     const float around = filter_.around[at];
-    const auto read = static_cast<float>(noise.read);
-    const auto shot = static_cast<float>(noise.gain);
+    read_ = static_cast<float>(noise.read);
+    shot_ = static_cast<float>(noise.gain);
+    offset_ += weight * around;
+    squaredWeights_ += weight * weight;
+    if (filter_.clipped) {
+        const auto common = static_cast<float>(surroundingsVariance(noise, static_cast<double>(around), radius_));
+        noiseOffset_ += (read_ + common) / (gain * gain);
+    }
     Image& clipped = lit_[plane] != 0 ? clippedLit_ : clippedDark_;
-    for (Eigen::Index row = 0; row < value_.rows(); ++row) {
-        for (Eigen::Index col = 0; col < value_.cols(); ++col) {
-            const int x = rect_.x + static_cast<int>(col);
-            const int y = rect_.y + static_cast<int>(row);
-            const auto value = static_cast<float>(frame.value(x, y, channel));
-            const float variance = read + shot * value;
-            value_(row, col) += weight * (value - around);
-            variance_(row, col) += weight * weight * variance;
-            if (frame.saturated(x, y, channel))
-                clipped(row, col) += 1;
-            if (!filter_.clipped)
-                continue;
-            const float light = (value - around) / gain;
-            squares_(row, col) += light * light;
-            noise_(row, col) += variance / (gain * gain);
-            for (std::size_t j = 0; j < moments_.size(); ++j)
-                moments_[j](row, col) += space_(at, static_cast<Eigen::Index>(j)) * light;
-        }
+    // Every pixel of some ten thousand windows in every plane: written so that compilers make vectors of it.
+    constexpr int kWidest = 61;
+    using Row = Eigen::Array<float, Eigen::Dynamic, 1, 0, kWidest, 1>;
+    Row row(rect_.width);
+    Row full(rect_.width);
+    Row light(rect_.width);
+    for (Eigen::Index y = 0; y < value_.cols(); ++y) {
+        const int inPicture = rect_.y + static_cast<int>(y);
+        for (Eigen::Index x = 0; x < row.size(); ++x)
+            row[x] = static_cast<float>(frame.value(rect_.x + static_cast<int>(x), inPicture, channel));
+        value_.col(y) += weight * row;
+        variance_.col(y) += weight * weight * row;
+        if (!filter_.clipped)
+            continue;
+        for (Eigen::Index x = 0; x < row.size(); ++x)
+            full[x] = frame.saturated(rect_.x + static_cast<int>(x), inPicture, channel) ? 1.0F : 0.0F;
+        clipped.col(y) += full;
+        noise_.col(y) += row / (gain * gain);
+        light = (row - around) / gain;
+        squares_.col(y) += light * light;
+        for (std::size_t j = 0; j < moments_.size(); ++j)
+            moments_[j].col(y) += space_(at, static_cast<Eigen::Index>(j)) * light;
     }
 }
 
 SpotWindow AmplitudeMap::window() const {
-    SpotWindow window{rect_.x, rect_.y, value_.cast<double>(), variance_.cast<double>(), {}};
-    window.state.setConstant(value_.rows(), value_.cols(), PixelState::Good);
+    SpotWindow window;
+    window.x0 = rect_.x;
+    window.y0 = rect_.y;
+    window.value = (value_.transpose() - offset_).cast<double>();
+    window.variance = (read_ * squaredWeights_ + shot_ * variance_.transpose()).cast<double>();
+    window.state.setConstant(value_.cols(), value_.rows(), PixelState::Good);
+    if (!filter_.clipped)
+        return window;
     float litPlanes = 0;
     for (std::size_t k = 0; k < lit_.size(); ++k)
         litPlanes += lit_[k] != 0 && filter_.used[k] != 0 ? 1.0F : 0.0F;
-    for (Eigen::Index row = 0; row < value_.rows(); ++row) {
-        for (Eigen::Index col = 0; col < value_.cols(); ++col) {
-            const bool alone = filter_.words.size() == 1;
-            if (clippedDark_(row, col) > 0)
-                window.state(row, col) = PixelState::Excluded;
-            else if (clippedLit_(row, col) > 0)
-                window.state(row, col) = alone || (!filter_.shared && clippedLit_(row, col) == litPlanes)
-                                             ? PixelState::Saturated
-                                             : PixelState::Excluded;
+    const bool alone = filter_.words.size() == 1;
+    for (Eigen::Index y = 0; y < value_.cols(); ++y) {
+        for (Eigen::Index x = 0; x < value_.rows(); ++x) {
+            if (clippedDark_(x, y) > 0)
+                window.state(y, x) = PixelState::Excluded;
+            else if (clippedLit_(x, y) > 0)
+                window.state(y, x) = alone || (!filter_.shared && clippedLit_(x, y) == litPlanes)
+                                         ? PixelState::Saturated
+                                         : PixelState::Excluded;
         }
     }
     return window;
-}
-
-double AmplitudeMap::distance(Eigen::Index row, Eigen::Index col, const Vector2d& centre) const {
-    return std::hypot(static_cast<double>(rect_.x + col) - centre.x(), static_cast<double>(rect_.y + row) - centre.y());
 }
 
 double AmplitudeMap::strayShare(const Vector2d& centre, double radius_px) const {
@@ -116,17 +158,24 @@ double AmplitudeMap::strayShare(const Vector2d& centre, double radius_px) const 
     const double energy = 1 / static_cast<double>(weights_.squaredNorm());
     double light = 0;
     double stray = 0;
-    for (Eigen::Index row = 0; row < squares_.rows(); ++row) {
-        for (Eigen::Index col = 0; col < squares_.cols(); ++col) {
-            if (clippedLit_(row, col) + clippedDark_(row, col) > 0 || distance(row, col, centre) > radius_px)
+    double squaredNoise = 0;
+    for (Eigen::Index y = 0; y < squares_.cols(); ++y) {
+        for (Eigen::Index x = 0; x < squares_.rows(); ++x) {
+            const Vector2d pixel(static_cast<double>(rect_.x + x), static_cast<double>(rect_.y + y));
+            if (clippedLit_(x, y) + clippedDark_(x, y) > 0 || (pixel - centre).norm() > radius_px)
                 continue;
-            const auto value = static_cast<double>(value_(row, col));
+            const auto value = static_cast<double>(value_(x, y) - offset_);
             light += energy * value * value;
-            stray += static_cast<double>(squares_(row, col)) - static_cast<double>(noise_(row, col)) * freedom / planes;
+            const double noise = static_cast<double>(noiseOffset_ + shot_ * noise_(x, y)) / planes;
+            stray += static_cast<double>(squares_(x, y)) - noise * freedom;
+            squaredNoise += noise * noise;
             for (const Image& moment : moments_)
-                stray -= static_cast<double>(moment(row, col) * moment(row, col));
+                stray -= static_cast<double>(moment(x, y) * moment(x, y));
         }
     }
+    // A word of one plane in a hundred has little light, and a hundred planes have much noise.
+    constexpr double kSigmas = 3;
+    stray -= kSigmas * std::sqrt(2 * freedom * squaredNoise);
     return light > 0 ? stray / light : 0.0;
 }
 

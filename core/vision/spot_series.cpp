@@ -100,9 +100,12 @@ double spotBrightnessSigma(const ImageNoise& noise, double level, int radius) {
     const double sum = kTap[0] + 2 * (kTap[1] + kTap[2]);
     const double squares = kTap[0] * kTap[0] + 2 * (kTap[1] * kTap[1] + kTap[2] * kTap[2]);
     const double core = std::pow(squares / (sum * sum), 2);
+    return std::sqrt(noise.variance(level) * core + surroundingsVariance(noise, level, radius));
+}
+
+double surroundingsVariance(const ImageNoise& noise, double around, int radius) {
     // The mean of a darker half is less sharp than that of all by about pi / 2, as a median is.
-    const double edge = std::numbers::pi / 2 / (8 * radius);
-    return std::sqrt(noise.variance(level) * (core + edge));
+    return noise.variance(around) * std::numbers::pi / 2 / (8 * radius);
 }
 
 SpotSeries::SpotSeries(std::size_t planes, std::size_t spots)
@@ -130,8 +133,10 @@ void SpotSeries::read(const FramePixels& frame, std::span<const SpotCandidate> s
 std::vector<double> exposureGains(const SpotSeries& series, std::span<const double> sigma,
                                   std::span<const std::size_t> litCount) {
     constexpr double kStrong = 3;
+    constexpr double kGround = 0.4;
     constexpr std::size_t kFewest = 3;
     constexpr double kLeastStep = 0.05;
+    constexpr double kLeastPart = 0.3;
     const Eigen::Index planes = series.light.rows();
     std::vector<double> gains(static_cast<std::size_t>(planes), 1);
     std::vector<Eigen::Index> spots;
@@ -142,7 +147,11 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
         Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(i);
         const auto high = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
         std::nth_element(values.begin(), high, values.end());
-        if (static_cast<double>(*high) > kStrong * sigma[static_cast<std::size_t>(i)]) {
+        const auto low = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 10);
+        std::nth_element(values.begin(), low, high);
+        // A spot on ground that is brighter than its surroundings looks lit at a shorter exposure where it is dark.
+        if (static_cast<double>(*high) > kStrong * sigma[static_cast<std::size_t>(i)] &&
+            static_cast<double>(*low) < kGround * static_cast<double>(*high)) {
             spots.push_back(i);
             strongest.push_back(static_cast<double>(*high));
         }
@@ -164,7 +173,17 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
         strongest.resize(kept);
     }
     std::vector<std::size_t> told;
-    std::vector<double> shares;
+    std::vector<std::pair<double, Eigen::Index>> shares;
+    std::vector<double> levels(gains.size(), 1);
+    const auto levelAt = [&](Eigen::Index k, Eigen::Index spot) {
+        return static_cast<double>(series.light(k, spot) + series.around(k, spot));
+    };
+    const auto highest = [&](Eigen::Index spot) {
+        Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(spot) + series.around.col(spot);
+        const auto high = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
+        std::nth_element(values.begin(), high, values.end());
+        return static_cast<double>(*high);
+    };
     for (std::size_t k = 0; k < gains.size(); ++k) {
         if (litCount[k] < kFewest || spots.size() < kFewest)
             continue;
@@ -172,20 +191,26 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
         for (std::size_t i = 0; i < spots.size(); ++i) {
             const auto light = static_cast<double>(series.light(static_cast<Eigen::Index>(k), spots[i]));
             if (light > kStrong * sigma[static_cast<std::size_t>(spots[i])])
-                shares.push_back(light / strongest[i]);
+                shares.emplace_back(light / strongest[i], spots[i]);
         }
         if (shares.size() < kFewest)
             continue;
         std::sort(shares.begin(), shares.end());
-        const double top = shares[9 * (shares.size() - 1) / 10];
+        const double top = shares[9 * (shares.size() - 1) / 10].first;
         const auto shining =
-            std::partition_point(shares.begin(), shares.end(), [&](double s) { return s < 0.5 * top; });
+            std::partition_point(shares.begin(), shares.end(), [&](const auto& s) { return s.first < 0.5 * top; });
         const auto count = static_cast<std::size_t>(shares.end() - shining);
         // Less than that is what stray light makes of LEDs that nobody sees.
         constexpr double kLeastShare = 0.1;
         if (top < kLeastShare || count < kFewest)
             continue;
-        gains[k] = *(shining + static_cast<std::ptrdiff_t>(count / 2));
+        // A lamp leaves less of its range to a clipped LED; then the spots are brighter, as a shorter exposure makes
+        // none.
+        std::vector<double> here;
+        for (auto spot = shining; spot != shares.end(); ++spot)
+            here.push_back(levelAt(static_cast<Eigen::Index>(k), spot->second) / highest(spot->second));
+        gains[k] = (shining + static_cast<std::ptrdiff_t>(count / 2))->first;
+        levels[k] = median(std::move(here));
         told.push_back(k);
     }
     std::vector<double> all;
@@ -194,9 +219,13 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
     if (all.empty())
         return gains;
     const double usual = median(std::move(all));
+    all.clear();
+    for (const std::size_t k : told)
+        all.push_back(levels[k]);
+    const double usualLevel = median(std::move(all));
     for (const std::size_t k : told) {
         gains[k] /= usual;
-        if (std::abs(gains[k] - 1) < kLeastStep)
+        if (std::abs(gains[k] - 1) < kLeastStep || std::log(levels[k] / usualLevel) / std::log(gains[k]) < kLeastPart)
             gains[k] = 1;
     }
     return gains;

@@ -12,13 +12,13 @@ namespace {
 /// Ground follows its surroundings by a share of what they do; skin and boards differ by half from what is around them.
 constexpr double kMostShare = 0.5;
 
-/// True where the surroundings do no more than noise does, and than the words shine on them. To let a spot follow them
-/// would cost much where its own light reaches that far, and gain nothing.
-bool areSteady(const Codebook& codebook, const LightFilter& filter, const Ambient& ambient) {
+/// Weights of the words where the surroundings do no more than noise does, and than the words shine on them; else none.
+/// To let a spot follow them would cost much where its own light reaches that far, and gain nothing.
+Eigen::MatrixXd steadyWeights(const Codebook& codebook, const LightFilter& filter, const Ambient& ambient) {
     const Eigen::MatrixXd X = designMatrix(codebook, filter.words);
     const auto inverse = inverseNormalMatrix(X, filter.used, codebook);
     if (!inverse)
-        return false;
+        return {};
     Eigen::VectorXd light = centred(ambient, filter.used).light;
     double freedom = -static_cast<double>(X.cols());
     for (std::size_t k = 0; k < filter.used.size(); ++k) {
@@ -30,7 +30,9 @@ bool areSteady(const Codebook& codebook, const LightFilter& filter, const Ambien
     // What is left of a least-squares fit, over the used planes: a^2 - (X^T a)^T N^-1 (X^T a).
     const Eigen::VectorXd moment = X.transpose() * light;
     const double left = light.squaredNorm() - moment.dot(*inverse * moment);
-    return left <= filter.sigma * filter.sigma * std::max(1.0, freedom);
+    return left <= filter.sigma * filter.sigma * std::max(1.0, freedom)
+               ? amplitudeWeights(X, *inverse, filter.words.size(), filter.used)
+               : Eigen::MatrixXd();
 }
 
 }  // namespace
@@ -58,9 +60,11 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
         filter_.around.size() != static_cast<Eigen::Index>(codebook.planes()))
         throw std::logic_error("AmplitudeMap: the filter does not belong to this codebook");
     Ambient ambient = ambientOf(codebook, filter_.around, filter_.gains, filter_.sigma);
-    if (ambient.light.size() > 0 && areSteady(codebook, filter_, ambient))
-        ambient = {};
     Eigen::MatrixXd weights;
+    if (ambient.light.size() > 0)
+        weights = steadyWeights(codebook, filter_, ambient);
+    if (weights.size() > 0)
+        ambient = {};
     while (weights.size() == 0) {
         if (filter_.words.empty())
             throw std::logic_error("AmplitudeMap: a word that can't be separated");
@@ -102,27 +106,28 @@ void AmplitudeMap::add(const FramePixels& frame, std::size_t plane, int channel,
     Image& clipped = lit_[plane] != 0 ? clippedLit_ : clippedDark_;
     // Every pixel of some ten thousand windows in every plane: written so that compilers make vectors of it.
     constexpr int kWidest = 61;
-    using Row = Eigen::Array<float, Eigen::Dynamic, 1, 0, kWidest, 1>;
-    Row row(rect_.width);
-    Row full(rect_.width);
-    Row light(rect_.width);
-    for (Eigen::Index y = 0; y < value_.cols(); ++y) {
-        const int inPicture = rect_.y + static_cast<int>(y);
-        for (Eigen::Index x = 0; x < row.size(); ++x)
-            row[x] = static_cast<float>(frame.value(rect_.x + static_cast<int>(x), inPicture, channel));
-        value_.col(y) += weight * row;
-        variance_.col(y) += weight * weight * row;
-        if (!filter_.clipped)
-            continue;
-        for (Eigen::Index x = 0; x < row.size(); ++x)
-            full[x] = frame.saturated(rect_.x + static_cast<int>(x), inPicture, channel) ? 1.0F : 0.0F;
-        clipped.col(y) += full;
-        noise_.col(y) += row / (gain * gain);
-        light = (row - around) / gain;
-        squares_.col(y) += light * light;
-        for (std::size_t j = 0; j < moments_.size(); ++j)
-            moments_[j].col(y) += space_(at, static_cast<Eigen::Index>(j)) * light;
+    Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, 0, kWidest, kWidest> light(value_.rows(), value_.cols());
+    for (Eigen::Index y = 0; y < light.cols(); ++y)
+        frame.values(rect_.x, rect_.y + static_cast<int>(y), rect_.width, channel, light.col(y).data());
+    value_ += weight * light;
+    variance_ += weight * weight * light;
+    if (!filter_.clipped)
+        return;
+    // Of three channels one may be clipped where their mean is dark.
+    constexpr float kMayBeClipped = 254.0F / 3;
+    if (light.maxCoeff() >= kMayBeClipped) {
+        for (Eigen::Index y = 0; y < light.cols(); ++y) {
+            for (Eigen::Index x = 0; x < light.rows(); ++x)
+                clipped(x, y) += frame.saturated(rect_.x + static_cast<int>(x), rect_.y + static_cast<int>(y), channel)
+                                     ? 1.0F
+                                     : 0.0F;
+        }
     }
+    noise_ += light / (gain * gain);
+    light = (light - around) / gain;
+    squares_ += light.square();
+    for (std::size_t j = 0; j < moments_.size(); ++j)
+        moments_[j] += space_(at, static_cast<Eigen::Index>(j)) * light;
 }
 
 SpotWindow AmplitudeMap::window() const {

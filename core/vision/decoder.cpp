@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <tuple>
 
 #include "core/vision/frame_pass.h"
 #include "core/vision/neighbourhood.h"
@@ -21,29 +22,34 @@ void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& opti
     constexpr std::size_t kWatched = 100;
     // A halo of a few per cent reaches as far as that.
     const Neighbourhood neighbourhood(matches, options.windowRadius + 5);
+    const auto filterOf = [&](const MatchedSpot& match, std::size_t j, const std::vector<std::size_t>& around) {
+        LightFilter filter;
+        filter.words = {match.series.words[j]};
+        filter.used = match.series.used;
+        filter.around = scan.series.around.col(static_cast<Eigen::Index>(match.candidate));
+        filter.gains = scan.gains;
+        filter.sigma = scan.sigma[match.candidate];
+        filter.shared = match.series.words.size() > 1;
+        filter.clipped = scan.series.clipped[match.candidate] != 0;
+        for (std::size_t other = 0; other < match.series.words.size(); ++other) {
+            if (other != j)
+                filter.words.push_back(match.series.words[other]);
+        }
+        filter.words.insert(filter.words.end(), around.begin(), around.end());
+        return filter;
+    };
+    (void)forEach(matches.size(), {}, [&](std::size_t i) {
+        MatchedSpot& match = matches[i];
+        const std::vector<std::size_t> around = neighbourhood.wordsAround(i, kMostNeighbours);
+        for (std::size_t j = 0; j < match.series.words.size(); ++j)
+            match.maps.emplace_back(match.spot, options.windowRadius, size, scan.codebook, filterOf(match, j, around));
+    });
     std::size_t watched = 0;
     const std::size_t every = 1 + matches.size() / kWatched;
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-        MatchedSpot& match = matches[i];
-        const auto at = static_cast<Eigen::Index>(match.candidate);
-        const std::vector<std::size_t> around = neighbourhood.wordsAround(i, kMostNeighbours);
-        for (std::size_t j = 0; j < match.series.words.size(); ++j) {
-            LightFilter filter;
-            filter.words = {match.series.words[j]};
-            filter.used = match.series.used;
-            filter.around = scan.series.around.col(at);
-            filter.gains = scan.gains;
-            filter.sigma = scan.sigma[match.candidate];
-            filter.shared = match.series.words.size() > 1;
-            filter.clipped = scan.series.clipped[match.candidate] != 0;
-            for (std::size_t other = 0; other < match.series.words.size(); ++other) {
-                if (other != j)
-                    filter.words.push_back(match.series.words[other]);
-            }
-            filter.words.insert(filter.words.end(), around.begin(), around.end());
-            if (j == 0 && match.series.words.size() == 1 && i % every == 0 && watched++ < kWatched)
-                motion.watch(match.spot, size, scan.codebook, filter);
-            match.maps.emplace_back(match.spot, options.windowRadius, size, scan.codebook, std::move(filter));
+    for (std::size_t i = 0; i < matches.size() && watched < kWatched; i += every) {
+        if (matches[i].series.words.size() == 1) {
+            motion.watch(matches[i].spot, size, scan.codebook, filterOf(matches[i], 0, {}));
+            ++watched;
         }
     }
 }
@@ -123,9 +129,14 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
     });
     if (!done)
         return tl::unexpected(done.error());
-    const std::vector<SpotCandidate> candidates =
+    std::vector<SpotCandidate> candidates =
         finder.candidates(modules.size() * static_cast<std::size_t>(options.candidatesPerModule) +
                           static_cast<std::size_t>(options.extraCandidates));
+    // Those side by side after each other: their windows share what a cache holds of a picture.
+    std::sort(candidates.begin(), candidates.end(), [](const SpotCandidate& a, const SpotCandidate& b) {
+        constexpr int kStripe = 16;
+        return std::make_tuple(a.y / kStripe, a.x, a.y) < std::make_tuple(b.y / kStripe, b.x, b.y);
+    });
     scan.noise = finder.noise();
 
     Verdicts verdicts(modules.size());
@@ -147,16 +158,27 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
         prepareMaps(scan, size, options, matches, motion);
     }
     if (!matches.empty()) {
+        // Some pictures at a time: all maps together are larger than caches are, each is not.
+        constexpr std::size_t kAtOnce = 16;
+        std::vector<std::pair<std::size_t, FramePixels>> waiting;
+        const auto measure = [&] {
+            (void)forEach(matches.size(), {}, [&](std::size_t i) {
+                for (AmplitudeMap& map : matches[i].maps) {
+                    for (const auto& [plane, frame] : waiting)
+                        map.add(frame, plane, words->planes[plane].channel, scan.noise);
+                }
+            });
+            for (const auto& [plane, frame] : waiting)
+                motion.add(frame, plane, words->planes[plane].channel, scan.noise);
+            waiting.clear();
+        };
         done = pass.run("measuring spots", 0.75, 1, [&](std::size_t k, const FramePixels& frame) {
-            for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane) {
-                const int channel = words->planes[plane].channel;
-                (void)forEach(matches.size(), {}, [&](std::size_t i) {
-                    for (AmplitudeMap& map : matches[i].maps)
-                        map.add(frame, plane, channel, scan.noise);
-                });
-                motion.add(frame, plane, channel, scan.noise);
-            }
+            for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane)
+                waiting.emplace_back(plane, frame);
+            if (waiting.size() >= kAtOnce)
+                measure();
         });
+        measure();
         if (!done)
             return tl::unexpected(done.error());
     }

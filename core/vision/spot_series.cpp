@@ -16,6 +16,7 @@ constexpr int kCore = 2;
 // exp(-r^2 / 2 s^2) with s = 1.2 at r = 0, 1, 2.
 constexpr std::array<double, 3> kTap{1.0, 0.70665, 0.24935};
 constexpr int kLargestRadius = 30;
+constexpr int kLevels = 3 * 255 + 1;  // of three channels together
 
 /// @param pixel  grey level of a place times some whole number, as an int
 template <class Pixel>
@@ -50,12 +51,20 @@ SpotBrightness brightness(cv::Size size, const SpotCandidate& spot, int radius, 
         visit(spot.x - radius, spot.y - i);
     }
     if (count > 0) {
+        // The darker half by counting: there are few levels, and this is done for every spot in every plane.
         const std::size_t half = (count + 1) / 2;
-        std::nth_element(edge.begin(), edge.begin() + static_cast<std::ptrdiff_t>(half - 1),
-                         edge.begin() + static_cast<std::ptrdiff_t>(count));
+        std::array<std::uint8_t, kLevels> counts{};
+        int level = kLevels;
+        for (std::size_t i = 0; i < count; ++i) {
+            ++counts[static_cast<std::size_t>(edge[i])];
+            level = std::min(level, edge[i]);
+        }
         int darker = 0;
-        for (std::size_t i = 0; i < half; ++i)
-            darker += edge[i];
+        for (std::size_t left = half; left > 0; ++level) {
+            const auto here = std::min<std::size_t>(left, counts[static_cast<std::size_t>(level)]);
+            darker += level * static_cast<int>(here);
+            left -= here;
+        }
         result.around = scale * darker / static_cast<double>(half);
     }
     result.level = scale * sum / weights;
@@ -141,6 +150,7 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
     std::vector<double> gains(static_cast<std::size_t>(planes), 1);
     std::vector<Eigen::Index> spots;
     std::vector<double> strongest;
+    std::vector<double> highest(series.clipped.size());  // level
     std::vector<float> values(static_cast<std::size_t>(planes));
     for (Eigen::Index i = 0; i < series.light.cols(); ++i) {
         // But for the top tenth, which a flash may have.
@@ -154,6 +164,9 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
             static_cast<double>(*low) < kGround * static_cast<double>(*high)) {
             spots.push_back(i);
             strongest.push_back(static_cast<double>(*high));
+            Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(i) + series.around.col(i);
+            std::nth_element(values.begin(), high, values.end());
+            highest[static_cast<std::size_t>(i)] = static_cast<double>(*high);
         }
     }
     // Skirts and reflections shine with several LEDs at once, and tell nothing.
@@ -177,12 +190,6 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
     std::vector<double> levels(gains.size(), 1);
     const auto levelAt = [&](Eigen::Index k, Eigen::Index spot) {
         return static_cast<double>(series.light(k, spot) + series.around(k, spot));
-    };
-    const auto highest = [&](Eigen::Index spot) {
-        Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(spot) + series.around.col(spot);
-        const auto high = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
-        std::nth_element(values.begin(), high, values.end());
-        return static_cast<double>(*high);
     };
     for (std::size_t k = 0; k < gains.size(); ++k) {
         if (litCount[k] < kFewest || spots.size() < kFewest)
@@ -208,7 +215,8 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
         // none.
         std::vector<double> here;
         for (auto spot = shining; spot != shares.end(); ++spot)
-            here.push_back(levelAt(static_cast<Eigen::Index>(k), spot->second) / highest(spot->second));
+            here.push_back(levelAt(static_cast<Eigen::Index>(k), spot->second) /
+                           highest[static_cast<std::size_t>(spot->second)]);
         gains[k] = (shining + static_cast<std::ptrdiff_t>(count / 2))->first;
         levels[k] = median(std::move(here));
         told.push_back(k);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace skincal {
 namespace {
@@ -9,7 +10,21 @@ namespace {
 constexpr std::size_t kGroup = 8;
 constexpr std::size_t kGroups = 8;
 constexpr std::size_t kBlock = kGroup * kGroups;  // planes of which one number tells where a word is lit
+constexpr std::size_t kAtOnce = 64;
 constexpr std::size_t kSums = std::size_t{1} << kGroup;
+
+using Sums = std::array<std::array<float, kSums>, kGroups>;
+
+// The inner loop of decoding: unrolled, for which compilers must know its length.
+template <std::size_t groups>
+void addSums(const Sums& sums, std::span<const std::uint64_t> masks, std::vector<float>& products) {
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+        float sum = products[i];
+        for (std::size_t group = 0; group < groups; ++group)
+            sum += sums[group][masks[i] >> (kGroup * group) & (kSums - 1)];
+        products[i] = sum;
+    }
+}
 
 }  // namespace
 
@@ -35,7 +50,7 @@ WordRanking::WordRanking(const Codebook& codebook) : codebook_(codebook) {
 void WordRanking::addBlock(const Eigen::VectorXd& y, std::size_t block, std::vector<float>& products) const {
     const std::size_t planes = std::min(kBlock, codebook_.planes() - block * kBlock);
     const std::size_t groups = (planes + kGroup - 1) / kGroup;
-    std::array<std::array<float, kSums>, kGroups> sums{};
+    Sums sums{};
     for (std::size_t bit = 0; bit < kGroup * groups; ++bit) {
         auto& table = sums[bit / kGroup];
         const float here = bit < planes ? static_cast<float>(y[static_cast<Eigen::Index>(block * kBlock + bit)]) : 0.0F;
@@ -43,13 +58,24 @@ void WordRanking::addBlock(const Eigen::VectorXd& y, std::size_t block, std::vec
         for (std::size_t mask = 0; mask < half; ++mask)
             table[half + mask] = table[mask] + here;
     }
-    const std::uint64_t* masks = masks_.data() + block * words_.size();
-    for (std::size_t i = 0; i < products.size(); ++i) {
-        std::uint64_t mask = masks[i];
-        float sum = products[i];
-        for (std::size_t group = 0; group < groups; ++group, mask >>= kGroup)
-            sum += sums[group][mask & (kSums - 1)];
-        products[i] = sum;
+    const std::span masks(masks_.data() + block * words_.size(), words_.size());
+    switch (groups) {
+        case 1:
+            return addSums<1>(sums, masks, products);
+        case 2:
+            return addSums<2>(sums, masks, products);
+        case 3:
+            return addSums<3>(sums, masks, products);
+        case 4:
+            return addSums<4>(sums, masks, products);
+        case 5:
+            return addSums<5>(sums, masks, products);
+        case 6:
+            return addSums<6>(sums, masks, products);
+        case 7:
+            return addSums<7>(sums, masks, products);
+        default:
+            return addSums<kGroups>(sums, masks, products);
     }
 }
 
@@ -67,19 +93,26 @@ std::vector<RankedWord> WordRanking::best(const Eigen::VectorXd& y, std::size_t 
     std::vector<RankedWord> best;
     if (most == 0)
         return best;
+    // Nearly all words are far from the best few: whole groups are passed over.
     float least = 0;
-    for (std::size_t i = 0; i < products.size(); ++i) {
-        const float product = std::max(0.0F, products[i]);
-        const float score = product * product * inverseEnergy_[i];
-        if (score <= least)
+    for (std::size_t first = 0; first < products.size(); first += kAtOnce) {
+        const std::size_t count = std::min(products.size() - first, kAtOnce);
+        const auto size = static_cast<Eigen::Index>(count);
+        Eigen::Map<Eigen::ArrayXf> scores(products.data() + first, size);
+        scores = scores.max(0.0F).square() * Eigen::Map<const Eigen::ArrayXf>(inverseEnergy_.data() + first, size);
+        if (!(scores.maxCoeff() > least))
             continue;
-        if (best.size() == most)
-            best.pop_back();
-        const RankedWord ranked{static_cast<double>(score), words_[i]};
-        best.insert(std::upper_bound(best.begin(), best.end(), ranked,
-                                     [](const RankedWord& a, const RankedWord& b) { return a.score > b.score; }),
-                    ranked);
-        least = best.size() == most ? static_cast<float>(best.back().score) : 0.0F;
+        for (std::size_t i = first; i < first + count; ++i) {
+            if (!(products[i] > least))
+                continue;
+            if (best.size() == most)
+                best.pop_back();
+            const RankedWord ranked{static_cast<double>(products[i]), words_[i]};
+            best.insert(std::upper_bound(best.begin(), best.end(), ranked,
+                                         [](const RankedWord& a, const RankedWord& b) { return a.score > b.score; }),
+                        ranked);
+            least = best.size() == most ? static_cast<float>(best.back().score) : 0.0F;
+        }
     }
     return best;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/geometry/statistics.h"
 #include "core/vision/spot_series.h"
 
 namespace skincal {
@@ -49,6 +50,30 @@ Ambient ambientOf(const Codebook& codebook, const Eigen::VectorXf& around, std::
     return ambient;
 }
 
+std::vector<std::uint8_t> calmPlanes(const Eigen::VectorXf& around, std::span<const double> gains,
+                                     std::span<const std::uint8_t> used) {
+    constexpr double kLevels = 8;
+    constexpr double kSpreads = 6;  // of a median absolute deviation
+    const auto levelAt = [&](std::size_t k) {
+        return static_cast<double>(around[static_cast<Eigen::Index>(k)]) / gains[k];
+    };
+    std::vector<double> levels;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        if (used[k] != 0)
+            levels.push_back(levelAt(k));
+    }
+    const double usual = median(levels);
+    for (double& level : levels)
+        level = std::abs(level - usual);
+    const double most = std::max(kLevels, kSpreads * median(std::move(levels)));
+    std::vector<std::uint8_t> calm(used.begin(), used.end());
+    for (std::size_t k = 0; k < calm.size(); ++k) {
+        if (std::abs(levelAt(k) - usual) > most)
+            calm[k] = 0;
+    }
+    return calm;
+}
+
 AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size picture, const Codebook& codebook,
                            LightFilter filter)
     : rect_(cv::Rect(spot.x - radius, spot.y - radius, 2 * radius + 1, 2 * radius + 1) &
@@ -81,7 +106,8 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
     if (filter_.clipped) {
         clippedLit_ = zero;
         clippedDark_ = zero;
-        space_ = explainedSpace(codebook, filter_.words, filter_.used, ambient).cast<float>();
+        calm_ = calmPlanes(filter_.around, filter_.gains, filter_.used);
+        space_ = explainedSpace(codebook, filter_.words, calm_, ambient).cast<float>();
         squares_ = zero;
         noise_ = zero;
         moments_.assign(static_cast<std::size_t>(space_.cols()), zero);
@@ -99,7 +125,8 @@ void AmplitudeMap::add(const FramePixels& frame, std::size_t plane, int channel,
     shot_ = static_cast<float>(noise.gain);
     offset_ += weight * around;
     squaredWeights_ += weight * weight;
-    if (filter_.clipped) {
+    const bool isCalm = filter_.clipped && calm_[plane] != 0;
+    if (isCalm) {
         const auto common = static_cast<float>(surroundingsVariance(noise, static_cast<double>(around), radius_));
         noiseOffset_ += (read_ + common) / (gain * gain);
     }
@@ -123,6 +150,8 @@ void AmplitudeMap::add(const FramePixels& frame, std::size_t plane, int channel,
                                      : 0.0F;
         }
     }
+    if (!isCalm)
+        return;
     noise_ += light / (gain * gain);
     light = (light - around) / gain;
     squares_ += light.square();
@@ -157,7 +186,7 @@ SpotWindow AmplitudeMap::window() const {
 }
 
 double AmplitudeMap::strayShare(const Vector2d& centre, double radius_px) const {
-    const auto planes = static_cast<double>(std::count(filter_.used.begin(), filter_.used.end(), 1));
+    const auto planes = static_cast<double>(std::count(calm_.begin(), calm_.end(), 1));
     const double freedom = std::max(0.0, planes - static_cast<double>(space_.cols()));
     // |w|^2 off the rest is the inverse of the amplitude's variance for unit noise.
     const double energy = 1 / static_cast<double>(weights_.squaredNorm());

@@ -23,7 +23,7 @@ struct LightFilter {
     Eigen::VectorXf around;           ///< per plane, level of the surroundings (SpotBrightness::around)
     std::span<const double> gains{};  ///< per plane, of the exposure
     double sigma = 1;                 ///< of the spot's brightness, for how much it may follow its surroundings
-    bool shared = false;              ///< the second word is another LED's in the same spot
+    bool shared = false;              ///< the second word is that of another LED in the same spot
     bool clipped = false;             ///< whether any pixel may be: to look costs as much as all the rest
 };
 
@@ -33,6 +33,12 @@ struct LightFilter {
 /// @param sigma   of the values that may follow them
 [[nodiscard]] Ambient ambientOf(const Codebook& codebook, const Eigen::VectorXf& around, std::span<const double> gains,
                                 double sigma);
+
+/// The used planes without those in which a spot's surroundings are far from what they usually are: who walks past
+/// leaves light there that no word explains. Lamps and neighbours change them all the time, other LEDs hardly.
+/// @param around  per plane, SpotBrightness::around
+[[nodiscard]] std::vector<std::uint8_t> calmPlanes(const Eigen::VectorXf& around, std::span<const double> gains,
+                                                   std::span<const std::uint8_t> used);
 
 /// Collects, pixel by pixel in a window, the amplitude of one module's word, its variance, and what light there is that
 /// the words do not explain; each frame less the level of the surroundings and over its exposure.
@@ -48,7 +54,8 @@ class AmplitudeMap {
     /// After the last plane.
     [[nodiscard]] SpotWindow window() const;
     /// Energy of unexplained light over that of the word, noise and what that may chance to be taken off, in the pixels
-    /// within `radius_px` of `centre` that are not clipped; zero where it was not asked for.
+    /// within `radius_px` of `centre` that are not clipped; planes in which somebody walks past don't count. Zero where
+    /// it was not asked for.
     [[nodiscard]] double strayShare(const Vector2d& centre, double radius_px) const;
 
   private:
@@ -60,6 +67,7 @@ class AmplitudeMap {
     Eigen::VectorXf weights_;
     Eigen::MatrixXf space_;  ///< planes x unknowns, orthonormal: what the words and the surroundings explain
     std::vector<std::uint8_t> lit_;
+    std::vector<std::uint8_t> calm_;  ///< planes in which light that the word does not explain is looked for
     // Sums over the planes of what pixels have in common …
     float read_ = 0;
     float shot_ = 0;

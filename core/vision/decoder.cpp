@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <tuple>
@@ -29,7 +30,7 @@ void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& opti
         filter.around = scan.series.around.col(static_cast<Eigen::Index>(match.candidate));
         filter.gains = scan.gains;
         filter.sigma = scan.sigma[match.candidate];
-        filter.shared = match.series.words.size() > 1;
+        filter.shared = sharesSpot(match.series, j);
         filter.clipped = scan.series.clipped[match.candidate] != 0;
         for (std::size_t other = 0; other < match.series.words.size(); ++other) {
             if (other != j)
@@ -189,8 +190,12 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
     if (!isFitted)
         return tl::unexpected(ScanError{"cancelled", true});
 
-    const std::vector<Sighting> sightings = sightingsOf(scan, matches, options, verdicts);
     std::optional<double> moved_px = motion.moved_px();
+    // What moves leaves light that its word does not explain, about as much as the square of the way over that of a
+    // spot's width.
+    DecoderOptions moving = options;
+    moving.maxStrayShare += std::pow(std::min(moved_px.value_or(0), options.maxMotion_px), 2);
+    const std::vector<Sighting> sightings = sightingsOf(scan, matches, moving, verdicts);
     // Who stops in front of a part of the skin hides it as suddenly as a knock does; the rest has not moved then.
     if (!moved_px || *moved_px > 0)
         moved_px = std::max(moved_px, knocked_px(sightings, matches));

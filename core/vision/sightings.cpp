@@ -83,7 +83,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             }
             // The skirt of a neighbour blinks the neighbour's word; its centre lies elsewhere. Where two LEDs share one
             // maximum, each may sit a little off it.
-            const bool shared = match.maps.size() > 1;
+            const bool shared = sharesSpot(match.series, j);
             const double allowed = shared ? options.windowRadius - 1.0 : options.maxShift_px;
             if ((fit->centre - Vector2d(match.spot.x, match.spot.y)).norm() > allowed) {
                 verdicts.note(module, DetectionVerdict::NotFound, "only stray light blinks its word");

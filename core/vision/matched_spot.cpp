@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/vision/parallel.h"
+#include "core/vision/surroundings.h"
 
 namespace skincal {
 namespace {

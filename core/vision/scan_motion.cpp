@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/geometry/statistics.h"
+#include "core/vision/surroundings.h"
 
 namespace skincal {
 namespace {

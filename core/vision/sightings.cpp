@@ -62,7 +62,8 @@ void dropStrangeWidths(std::vector<Sighting>& sightings, Verdicts& verdicts) {
         const double away = std::abs(std::log(sighting.fit.width_px) - usual);
         const bool isStrange = away > std::log(kAlike) + kSigmas * sighting.fit.logWidthSigma;
         if (isStrange)
-            verdicts.note(sighting.module, DetectionVerdict::NotFound, std::string(name(SpotFitError::WrongShape)));
+            verdicts.replace(sighting.module,
+                             {{}, DetectionVerdict::NotFound, std::string(name(SpotFitError::WrongShape))});
         return isStrange;
     });
 }

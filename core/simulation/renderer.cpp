@@ -27,6 +27,34 @@ double ledLobe(double angle, double fullAngle) {
     return std::pow(c, std::log(0.5) / std::log(std::cos(0.5 * fullAngle)));
 }
 
+void drawLed(cv::Mat& light, const LedSpot& spot, const RenderOptions& options) {
+    constexpr double kHaloWidth = 2.5;
+    const int radius = static_cast<int>(std::ceil(3.5 * kHaloWidth * options.blur_px));
+    const int cx = static_cast<int>(std::lround(spot.pixel.x()));
+    const int cy = static_cast<int>(std::lround(spot.pixel.y()));
+    for (const auto& [width, peak] :
+         {std::pair(options.blur_px, spot.peak), std::pair(kHaloWidth * options.blur_px, options.halo * spot.peak)}) {
+        // A pixel collects light over its area: differences of the error function, exact at any sub-pixel place.
+        const double s = 1 / (std::sqrt(2.0) * width);
+        const double norm = 2 * 180 * kDegree * width * width * peak / 4;
+        std::vector<double> along(static_cast<std::size_t>(2 * radius + 1));
+        for (int dx = -radius; dx <= radius; ++dx) {
+            const double x = cx + dx - spot.pixel.x();
+            along[static_cast<std::size_t>(dx + radius)] = std::erf((x + 0.5) * s) - std::erf((x - 0.5) * s);
+        }
+        for (int dy = -radius; dy <= radius; ++dy) {
+            const int y = cy + dy;
+            if (y < 0 || y >= light.rows)
+                continue;
+            const double v = y - spot.pixel.y();
+            const double across = norm * (std::erf((v + 0.5) * s) - std::erf((v - 0.5) * s));
+            auto* row = light.ptr<float>(y);
+            for (int dx = std::max(-radius, -cx); dx <= std::min(radius, light.cols - 1 - cx); ++dx)
+                row[cx + dx] += static_cast<float>(across * along[static_cast<std::size_t>(dx + radius)]);
+        }
+    }
+}
+
 FrameRenderer::FrameRenderer(const World& world, std::size_t view, std::size_t frames)
     : FrameRenderer(world, world.T_r_v[view], view, frames) {}
 
@@ -64,9 +92,9 @@ void FrameRenderer::moveCamera(const Isometry3d& T_r_v) {
     }
 }
 
-std::vector<FrameRenderer::Spot> FrameRenderer::spotsAt(const Isometry3d& T_r_v) const {
+std::vector<LedSpot> FrameRenderer::spotsAt(const Isometry3d& T_r_v) const {
     const RenderOptions& options = world_.scenario.pictures;
-    std::vector<Spot> spots(world_.T_r_u.size());
+    std::vector<LedSpot> spots(world_.T_r_u.size());
     // Light fades towards the side but does not end at an angle, as a rule of visibility does.
     Visibility any;
     any.maxAngle = 85 * kDegree;
@@ -88,35 +116,6 @@ std::vector<FrameRenderer::Spot> FrameRenderer::spotsAt(const Isometry3d& T_r_v)
 
 bool FrameRenderer::bumped(std::size_t frame) const {
     return !bumpedSpots_.empty() && 2 * frame >= frames_;
-}
-
-void FrameRenderer::drawSpot(cv::Mat& light, const Spot& spot) const {
-    const RenderOptions& options = world_.scenario.pictures;
-    constexpr double kHaloWidth = 2.5;
-    const int radius = static_cast<int>(std::ceil(3.5 * kHaloWidth * options.blur_px));
-    const int cx = static_cast<int>(std::lround(spot.pixel.x()));
-    const int cy = static_cast<int>(std::lround(spot.pixel.y()));
-    for (const auto& [width, peak] :
-         {std::pair(options.blur_px, spot.peak), std::pair(kHaloWidth * options.blur_px, options.halo * spot.peak)}) {
-        // A pixel collects light over its area: differences of the error function, exact at any sub-pixel place.
-        const double s = 1 / (std::sqrt(2.0) * width);
-        const double norm = 2 * 180 * kDegree * width * width * peak / 4;
-        std::vector<double> along(static_cast<std::size_t>(2 * radius + 1));
-        for (int dx = -radius; dx <= radius; ++dx) {
-            const double x = cx + dx - spot.pixel.x();
-            along[static_cast<std::size_t>(dx + radius)] = std::erf((x + 0.5) * s) - std::erf((x - 0.5) * s);
-        }
-        for (int dy = -radius; dy <= radius; ++dy) {
-            const int y = cy + dy;
-            if (y < 0 || y >= light.rows)
-                continue;
-            const double v = y - spot.pixel.y();
-            const double across = norm * (std::erf((v + 0.5) * s) - std::erf((v - 0.5) * s));
-            auto* row = light.ptr<float>(y);
-            for (int dx = std::max(-radius, -cx); dx <= std::min(radius, light.cols - 1 - cx); ++dx)
-                row[cx + dx] += static_cast<float>(across * along[static_cast<std::size_t>(dx + radius)]);
-        }
-    }
 }
 
 void FrameRenderer::passBy(cv::Mat& light, std::size_t frame) const {
@@ -166,7 +165,7 @@ cv::Mat FrameRenderer::expose(const cv::Mat& light, std::uint64_t noiseSeed) con
 cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t frame, bool colour, double exposure,
                               const HeldLayer& held) const {
     colour = colour || std::any_of(lit.begin(), lit.end(), [](const LitModule& l) { return l.colour.has_value(); });
-    const std::vector<Spot>& spots = bumped(frame) ? bumpedSpots_ : spots_;
+    const std::vector<LedSpot>& spots = bumped(frame) ? bumpedSpots_ : spots_;
     const double mirror = world_.scenario.disturbances.reflection;
     const std::uint64_t frameSeed = (world_.seed * 1000003 + view_) * 1000003 + frame;
     std::vector<cv::Mat> channels;
@@ -179,20 +178,20 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
             const auto found = index_.find(l.module);
             if (found == index_.end() || spots[found->second].peak <= 0)
                 continue;
-            Spot spot = spots[found->second];
+            LedSpot spot = spots[found->second];
             if (l.colour) {
                 // BGR; a coloured LED leaks a little into the other channels of the sensor.
                 const int on = l.colour->at(static_cast<std::size_t>(2 - channel));
                 spot.peak *= on != 0 ? 1.0 : 0.08;
             }
-            drawSpot(light, spot);
+            drawLed(light, spot, world_.scenario.pictures);
             if (mirror > 0) {
                 const double edge = mirrorEdge(world_.scenario.camera);
-                Spot image = spot;
+                LedSpot image = spot;
                 image.pixel.y() = 2 * edge - image.pixel.y();
                 image.peak *= mirror;
                 if (image.pixel.y() > edge && world_.scenario.camera.contains(image.pixel))
-                    drawSpot(light, image);
+                    drawLed(light, image, world_.scenario.pictures);
             }
         }
         if (!held.cover.empty()) {

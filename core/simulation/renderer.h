@@ -9,6 +9,15 @@
 
 namespace skincal {
 
+/// Where an LED shows in a picture, and how bright.
+struct LedSpot {
+    Vector2d pixel = Vector2d::Zero();
+    double peak = 0;  ///< grey levels; 0 where it can't be seen
+};
+
+/// Adds an LED's light to a picture of light (CV_32F): a Gaussian with a halo, each collected over the area of a pixel.
+void drawLed(cv::Mat& light, const LedSpot& spot, const RenderOptions& options);
+
 /// Something that is held between the camera and everything else. Both CV_32F and equally large.
 struct HeldLayer {
     cv::Mat light;     ///< grey levels that it adds: its own times how much of a pixel it covers
@@ -38,15 +47,12 @@ class FrameRenderer {
     [[nodiscard]] cv::Mat render(const std::vector<LitModule>& lit, std::size_t frame, bool colour = false,
                                  double exposure = 1, const HeldLayer& held = {}) const;
 
-  private:
-    struct Spot {
-        Vector2d pixel = Vector2d::Zero();
-        double peak = 0;  ///< grey levels
-    };
+    /// Of each module, before any knock.
+    [[nodiscard]] const std::vector<LedSpot>& spots() const { return spots_; }
 
-    [[nodiscard]] std::vector<Spot> spotsAt(const Isometry3d& T_r_v) const;
+  private:
+    [[nodiscard]] std::vector<LedSpot> spotsAt(const Isometry3d& T_r_v) const;
     [[nodiscard]] bool bumped(std::size_t frame) const;
-    void drawSpot(cv::Mat& light, const Spot& spot) const;
     void passBy(cv::Mat& light, std::size_t frame) const;
     [[nodiscard]] cv::Mat expose(const cv::Mat& light, std::uint64_t noiseSeed) const;
 
@@ -56,10 +62,10 @@ class FrameRenderer {
     std::size_t frames_;
     int margin_;  ///< that scenes are wider than pictures
     ScenePainter painter_;
-    cv::Mat background_;             ///< CV_32F
-    std::vector<Spot> spots_;        ///< per module; no peak where it can't be seen
-    cv::Mat bumpedBackground_;       ///< after the camera was knocked; empty in views where it is not
-    std::vector<Spot> bumpedSpots_;  ///< the same
+    cv::Mat background_;                ///< CV_32F
+    std::vector<LedSpot> spots_;        ///< per module
+    cv::Mat bumpedBackground_;          ///< after the camera was knocked; empty in views where it is not
+    std::vector<LedSpot> bumpedSpots_;  ///< the same
     RoomLight roomLight_;
     cv::Mat roomShare_;         ///< CV_32F: where the room shows between the body's parts
     Person person_;             ///< empty without one

@@ -9,6 +9,7 @@
 
 #include "core/geometry/random.h"
 #include "core/simulation/renderer.h"
+#include "core/study/centre_bound.h"
 #include "core/vision/decoder.h"
 #include "core/vision/paper_detector.h"
 
@@ -117,7 +118,14 @@ double distanceTo(const std::vector<Vector2d>& places, const Vector2d& pixel) {
     return nearest;
 }
 
-void score(const World& world, const ViewDetections& view, ScanScore& result) {
+// A room that changes has no level that noise could be told from.
+bool isSteady(Disturbance disturbance) {
+    return disturbance == Disturbance::None || disturbance == Disturbance::Ambient ||
+           disturbance == Disturbance::Crowding;
+}
+
+void score(const World& world, const ViewDetections& view, const std::vector<std::optional<double>>& bounds,
+           ScanScore& result) {
     const auto index = world.skin.indexById();
     std::vector<bool> visible(world.T_r_u.size());
     for (std::size_t u = 0; u < visible.size(); ++u) {
@@ -134,6 +142,11 @@ void score(const World& world, const ViewDetections& view, ScanScore& result) {
             ++result.found;
             result.squaredError += error * error;
             result.squaredSigmas += error * error / (found.sigma_px * found.sigma_px);
+            if (!bounds.empty() && bounds[u]) {
+                ++result.sharp;
+                result.squaredBounds += error * error / (*bounds[u] * *bounds[u]);
+                result.sharpSigmas += error * error / (found.sigma_px * found.sigma_px);
+            }
         }
     }
     for (const Undetected& missing : view.undetected) {
@@ -188,6 +201,10 @@ double ScanScore::rmsSigmas() const {
     return found > 0 ? std::sqrt(squaredSigmas / (2 * static_cast<double>(found))) : 0;
 }
 
+double ScanScore::rmsBounds() const {
+    return sharp > 0 ? std::sqrt(squaredBounds / (2 * static_cast<double>(sharp))) : 0;
+}
+
 void ScanScore::add(const ScanScore& other) {
     views += other.views;
     frames += other.frames;
@@ -197,6 +214,9 @@ void ScanScore::add(const ScanScore& other) {
     wrong += other.wrong;
     squaredError += other.squaredError;
     squaredSigmas += other.squaredSigmas;
+    sharp += other.sharp;
+    squaredBounds += other.squaredBounds;
+    sharpSigmas += other.sharpSigmas;
     seconds += other.seconds;
 }
 
@@ -255,7 +275,10 @@ World scanWorld(const ScanCase& what, std::uint64_t seed) {
 }
 
 ScanScore scoreScan(const ScanCase& what, std::uint64_t seed, const RunContext& context) {
-    World world = scanWorld(what, seed);
+    return scoreScan(scanWorld(what, seed), what, context);
+}
+
+ScanScore scoreScan(World world, const ScanCase& what, const RunContext& context) {
     world.scenario.views.scan = what.method == ScanMethod::Coded ? ScanKind::Coded : ScanKind::OneAtATime;
     const std::vector<FrameInfo> frames = planScan(world, kView);
     const FrameRenderer renderer(world, kView, frames.size());
@@ -288,7 +311,10 @@ ScanScore scoreScan(const ScanCase& what, std::uint64_t seed, const RunContext& 
     result.seconds = std::chrono::duration<double>(Clock::now() - start).count() - painting;
     result.views = 1;
     result.frames = frames.size();
-    score(world, *view, result);
+    std::vector<std::optional<double>> bounds;
+    if (isSteady(what.disturbance) && !pictures.empty())
+        bounds = centreBounds(world, renderer.spots(), frames, pictures);
+    score(world, *view, bounds, result);
     return result;
 }
 

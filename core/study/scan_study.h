@@ -56,12 +56,16 @@ struct ScanScore {
     std::size_t wrong = 0;     ///< modules, visible or not, that were reported more than `kElsewhere_px` off
     double squaredError = 0;   ///< px^2, sum over found and both axes
     double squaredSigmas = 0;  ///< the same in units of the reported standard deviation
+    std::size_t sharp = 0;     ///< of the found, those that are not clipped and that centreBounds has a bound of
+    double squaredBounds = 0;  ///< of these, squared error over the squared bound, sum over both axes
+    double sharpSigmas = 0;    ///< of these, the part of squaredSigmas
     double seconds = 0;        ///< that decoding took
 
     static constexpr double kElsewhere_px = 3;
     [[nodiscard]] double foundShare() const;
     [[nodiscard]] double rms_px() const;     ///< per axis
     [[nodiscard]] double rmsSigmas() const;  ///< per axis; one where the standard deviations are right
+    [[nodiscard]] double rmsBounds() const;  ///< per axis; one where no unbiased estimate could be better
     void add(const ScanScore& other);
 };
 
@@ -71,6 +75,8 @@ struct ScanScore {
 
 /// Scans view 1 of scanWorld in pictures and decodes them. Cancelled: no views.
 [[nodiscard]] ScanScore scoreScan(const ScanCase& what, std::uint64_t seed, const RunContext& context = {});
+/// The same of a world of scanWorld in which something was changed.
+[[nodiscard]] ScanScore scoreScan(World world, const ScanCase& what, const RunContext& context = {});
 
 struct ScanStudyOptions {
     std::vector<ScanCase> cases;

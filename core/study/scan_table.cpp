@@ -12,9 +12,10 @@ std::string percent(std::size_t part, std::size_t whole) {
 }
 
 std::string line(const std::string& what, const ScanScore& score) {
-    return fmt::format("| {} | {} | {} | {} | {} | {:.3f} | {:.2f} |\n", what, score.visible,
+    return fmt::format("| {} | {} | {} | {} | {} | {:.3f} | {:.2f} | {} |\n", what, score.visible,
                        percent(score.found, score.visible), percent(score.choices, score.visible), score.wrong,
-                       score.rms_px(), score.rmsSigmas());
+                       score.rms_px(), score.rmsSigmas(),
+                       score.sharp > 0 ? fmt::format("{:.2f}", score.rmsBounds()) : "–");
 }
 
 }  // namespace
@@ -23,8 +24,8 @@ std::string scanTable(const ScanStudy& study) {
     std::string text =
         "| disturbance | strength | modules | distance, m | scan | pictures | visible | found | to choose from | wrong "
         "| "
-        "rms, px | rms, sigma |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+        "rms, px | rms, sigma | rms, bounds |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
     ScanScore coded;
     for (const ScanStudyRow& row : study.rows) {
         const ScanCase& what = row.what;

@@ -23,16 +23,9 @@ struct LightFilter {
     Eigen::VectorXf around;           ///< per plane, level of the surroundings (SpotBrightness::around)
     std::span<const double> gains{};  ///< per plane, of the exposure
     double sigma = 1;                 ///< of the spot's brightness, for how much it may follow its surroundings
-    bool shared = false;              ///< the second word is another LED's in the same spot
-    bool clipped = false;             ///< whether strayShare() will be asked for: it costs as much as all the rest
+    bool shared = false;              ///< the second word is that of another LED in the same spot
+    bool clipped = false;             ///< whether any pixel may be: to look costs as much as all the rest
 };
-
-/// What the surroundings of a spot do, at the exposure that is usual; nothing where `around` is empty, and in colours,
-/// whose channels have surroundings of their own: in so few frames they would explain too much.
-/// @param around  per plane, SpotBrightness::around
-/// @param sigma   of the values that may follow them
-[[nodiscard]] Ambient ambientOf(const Codebook& codebook, const Eigen::VectorXf& around, std::span<const double> gains,
-                                double sigma);
 
 /// Collects, pixel by pixel in a window, the amplitude of one module's word, its variance, and what light there is that
 /// the words do not explain; each frame less the level of the surroundings and over its exposure.
@@ -47,27 +40,37 @@ class AmplitudeMap {
     void add(const FramePixels& frame, std::size_t plane, int channel, const ImageNoise& noise);
     /// After the last plane.
     [[nodiscard]] SpotWindow window() const;
-    /// Energy of unexplained light over that of the word, noise taken off, in the pixels within `radius_px` of `centre`
-    /// that are not clipped; zero where it was not asked for.
+    /// Energy of unexplained light over that of the word, noise and what that may chance to be taken off, in the pixels
+    /// within `radius_px` of `centre` that are not clipped; planes in which somebody walks past don't count. Zero where
+    /// it was not asked for.
     [[nodiscard]] double strayShare(const Vector2d& centre, double radius_px) const;
 
   private:
-    [[nodiscard]] double distance(Eigen::Index row, Eigen::Index col, const Vector2d& centre) const;
-
-    using Image = Eigen::ArrayXXf;
+    using Image = Eigen::ArrayXXf;  ///< a column per row of the picture, whose pixels lie side by side
 
     cv::Rect rect_;
+    int radius_;
     LightFilter filter_;
     Eigen::VectorXf weights_;
     Eigen::MatrixXf space_;  ///< planes x unknowns, orthonormal: what the words and the surroundings explain
     std::vector<std::uint8_t> lit_;
+    std::vector<std::uint8_t> calm_;  ///< planes in which light that the word does not explain is looked for
+    // Sums over the planes of what pixels have in common …
+    float read_ = 0;
+    float shot_ = 0;
+    float offset_ = 0;
+    float squaredWeights_ = 0;
+    float noiseOffset_ = 0;
+    // … and per pixel: of values times weights, and times squared weights.
     Image value_;
     Image variance_;
-    Image clippedLit_;            ///< in how many planes with the module lit …
-    Image clippedDark_;           ///< … and not
-    std::vector<Image> moments_;  ///< per column of space_
-    Image squares_;
+    // Only where something is clipped: in how many planes with the module lit, and not …
+    Image clippedLit_;
+    Image clippedDark_;
+    // … and of its light the values over squared exposure, the squares, and the products with each column of space_.
     Image noise_;
+    Image squares_;
+    std::vector<Image> moments_;
 };
 
 }  // namespace skincal

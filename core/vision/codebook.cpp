@@ -71,11 +71,13 @@ Eigen::MatrixXd designMatrix(const Codebook& codebook, std::span<const std::size
 
 std::optional<Eigen::MatrixXd> inverseNormalMatrix(const Eigen::MatrixXd& X, std::span<const std::uint8_t> used,
                                                    const Codebook& codebook, const Ambient& ambient) {
-    Eigen::MatrixXd N = Eigen::MatrixXd::Zero(X.cols(), X.cols());
+    Eigen::MatrixXd there = X;
     for (Eigen::Index k = 0; k < X.rows(); ++k) {
-        if (used[static_cast<std::size_t>(k)] != 0)
-            N.selfadjointView<Eigen::Lower>().rankUpdate(X.row(k).transpose());
+        if (used[static_cast<std::size_t>(k)] == 0)
+            there.row(k).setZero();
     }
+    // So small that Eigen's way with large matrices takes longer.
+    Eigen::MatrixXd N = there.transpose().lazyProduct(there);
     if (ambient.light.size() > 0)
         N(codebook.drift.cols(), codebook.drift.cols()) += ambient.ridge;
     const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor(N);
@@ -89,9 +91,12 @@ Eigen::MatrixXd amplitudeWeights(const Codebook& codebook, std::span<const std::
                                  std::span<const std::uint8_t> used, const Ambient& ambient) {
     const Eigen::MatrixXd X = designMatrix(codebook, words, centred(ambient, used));
     const auto inverse = inverseNormalMatrix(X, used, codebook, ambient);
-    if (!inverse)
-        return {};
-    Eigen::MatrixXd weights = inverse->bottomRows(static_cast<Eigen::Index>(words.size())) * X.transpose();
+    return inverse ? amplitudeWeights(X, *inverse, words.size(), used) : Eigen::MatrixXd();
+}
+
+Eigen::MatrixXd amplitudeWeights(const Eigen::MatrixXd& X, const Eigen::MatrixXd& inverse, std::size_t words,
+                                 std::span<const std::uint8_t> used) {
+    Eigen::MatrixXd weights = inverse.bottomRows(static_cast<Eigen::Index>(words)) * X.transpose();
     for (Eigen::Index k = 0; k < weights.cols(); ++k) {
         if (used[static_cast<std::size_t>(k)] == 0)
             weights.col(k).setZero();

@@ -53,6 +53,10 @@ struct Ambient {
 [[nodiscard]] Eigen::MatrixXd amplitudeWeights(const Codebook& codebook, std::span<const std::size_t> words,
                                                std::span<const std::uint8_t> used, const Ambient& ambient = {});
 
+/// The same where the design matrix, whose last columns are those of the words, and inverseNormalMatrix are at hand.
+[[nodiscard]] Eigen::MatrixXd amplitudeWeights(const Eigen::MatrixXd& X, const Eigen::MatrixXd& inverse,
+                                               std::size_t words, std::span<const std::uint8_t> used);
+
 /// Orthonormal basis of what drift, ambient and `words` can explain over the planes in `used`: planes x unknowns, zero
 /// rows for planes not used. What it leaves of a pixel's values is light that follows none of them.
 [[nodiscard]] Eigen::MatrixXd explainedSpace(const Codebook& codebook, std::span<const std::size_t> words,

@@ -3,50 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <tuple>
 
 #include "core/vision/frame_pass.h"
-#include "core/vision/neighbourhood.h"
 #include "core/vision/parallel.h"
 #include "core/vision/scan_motion.h"
 #include "core/vision/sightings.h"
+#include "core/vision/spot_maps.h"
 
 namespace skincal {
 namespace {
-
-void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& options, std::vector<MatchedSpot>& matches,
-                 ScanMotion& motion) {
-    constexpr std::size_t kMostNeighbours = 12;
-    constexpr std::size_t kWatched = 100;
-    // A halo of a few per cent reaches as far as that.
-    const Neighbourhood neighbourhood(matches, options.windowRadius + 5);
-    std::size_t watched = 0;
-    const std::size_t every = 1 + matches.size() / kWatched;
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-        MatchedSpot& match = matches[i];
-        const auto at = static_cast<Eigen::Index>(match.candidate);
-        const std::vector<std::size_t> around = neighbourhood.wordsAround(i, kMostNeighbours);
-        for (std::size_t j = 0; j < match.series.words.size(); ++j) {
-            LightFilter filter;
-            filter.words = {match.series.words[j]};
-            filter.used = match.series.used;
-            filter.around = scan.series.around.col(at);
-            filter.gains = scan.gains;
-            filter.sigma = scan.sigma[match.candidate];
-            filter.shared = match.series.words.size() > 1;
-            filter.clipped = scan.series.clipped[match.candidate] != 0;
-            for (std::size_t other = 0; other < match.series.words.size(); ++other) {
-                if (other != j)
-                    filter.words.push_back(match.series.words[other]);
-            }
-            filter.words.insert(filter.words.end(), around.begin(), around.end());
-            if (j == 0 && match.series.words.size() == 1 && i % every == 0 && watched++ < kWatched)
-                motion.watch(match.spot, size, scan.codebook, filter);
-            match.maps.emplace_back(match.spot, options.windowRadius, size, scan.codebook, std::move(filter));
-        }
-    }
-}
 
 ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, const std::vector<MatchedSpot>& matches,
                       const std::vector<Sighting>& sightings, std::optional<double> moved,
@@ -123,9 +92,14 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
     });
     if (!done)
         return tl::unexpected(done.error());
-    const std::vector<SpotCandidate> candidates =
+    std::vector<SpotCandidate> candidates =
         finder.candidates(modules.size() * static_cast<std::size_t>(options.candidatesPerModule) +
                           static_cast<std::size_t>(options.extraCandidates));
+    // Those side by side after each other: their windows share what a cache holds of a picture.
+    std::sort(candidates.begin(), candidates.end(), [](const SpotCandidate& a, const SpotCandidate& b) {
+        constexpr int kStripe = 16;
+        return std::make_tuple(a.y / kStripe, a.x, a.y) < std::make_tuple(b.y / kStripe, b.x, b.y);
+    });
     scan.noise = finder.noise();
 
     Verdicts verdicts(modules.size());
@@ -147,16 +121,27 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
         prepareMaps(scan, size, options, matches, motion);
     }
     if (!matches.empty()) {
+        // Some pictures at a time: all maps together are larger than caches are, each is not.
+        constexpr std::size_t kAtOnce = 16;
+        std::vector<std::pair<std::size_t, FramePixels>> waiting;
+        const auto measure = [&] {
+            (void)forEach(matches.size(), {}, [&](std::size_t i) {
+                for (AmplitudeMap& map : matches[i].maps) {
+                    for (const auto& [plane, frame] : waiting)
+                        map.add(frame, plane, words->planes[plane].channel, scan.noise);
+                }
+            });
+            for (const auto& [plane, frame] : waiting)
+                motion.add(frame, plane, words->planes[plane].channel, scan.noise);
+            waiting.clear();
+        };
         done = pass.run("measuring spots", 0.75, 1, [&](std::size_t k, const FramePixels& frame) {
-            for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane) {
-                const int channel = words->planes[plane].channel;
-                (void)forEach(matches.size(), {}, [&](std::size_t i) {
-                    for (AmplitudeMap& map : matches[i].maps)
-                        map.add(frame, plane, channel, scan.noise);
-                });
-                motion.add(frame, plane, channel, scan.noise);
-            }
+            for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane)
+                waiting.emplace_back(plane, frame);
+            if (waiting.size() >= kAtOnce)
+                measure();
         });
+        measure();
         if (!done)
             return tl::unexpected(done.error());
     }
@@ -167,8 +152,12 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
     if (!isFitted)
         return tl::unexpected(ScanError{"cancelled", true});
 
-    const std::vector<Sighting> sightings = sightingsOf(scan, matches, options, verdicts);
     std::optional<double> moved_px = motion.moved_px();
+    // What moves leaves light that its word does not explain, about as much as the square of the way over that of a
+    // spot's width.
+    DecoderOptions moving = options;
+    moving.maxStrayShare += std::pow(std::min(moved_px.value_or(0), options.maxMotion_px), 2);
+    const std::vector<Sighting> sightings = sightingsOf(scan, matches, moving, verdicts);
     // Who stops in front of a part of the skin hides it as suddenly as a knock does; the rest has not moved then.
     if (!moved_px || *moved_px > 0)
         moved_px = std::max(moved_px, knocked_px(sightings, matches));

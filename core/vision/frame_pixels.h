@@ -26,6 +26,17 @@ class FramePixels {
             return pixel[0];
         return channel >= 0 ? pixel[channel] : (pixel[0] + pixel[1] + pixel[2]) / 3.0;
     }
+    /// `count` values side by side from (x, y) on.
+    void values(int x, int y, int count, int channel, float* to) const {
+        if (picture_.channels() == 1) {
+            const std::uint8_t* pixel = at(x, y);
+            for (int i = 0; i < count; ++i)
+                to[i] = static_cast<float>(pixel[i]);
+            return;
+        }
+        for (int i = 0; i < count; ++i)
+            to[i] = static_cast<float>(value(x + i, y, channel));
+    }
     /// True where any channel that the plane is made of sits at the end of its range.
     [[nodiscard]] bool saturated(int x, int y, int channel) const {
         constexpr int kTop = 254;

@@ -9,7 +9,9 @@
 namespace skincal {
 namespace {
 
-constexpr int kStride = 4;
+// One pixel of so many is looked at.
+constexpr int kColumns = 4;
+constexpr int kRows = 8;
 
 // Half-width that holds 68.27 % of |difference|, as a continuous number: a difference of j stands for j ± 0.5.
 double centralSpread(const std::uint32_t* counts, int size, double total) {
@@ -29,10 +31,10 @@ double centralSpread(const std::uint32_t* counts, int size, double total) {
 }  // namespace
 
 void ImageNoiseEstimator::add(const cv::Mat& a, const cv::Mat& b) {
-    for (int y = kStride / 2; y < a.rows; y += kStride) {
+    for (int y = kRows / 2; y < a.rows; y += kRows) {
         const auto* pa = a.ptr<std::uint8_t>(y);
         const auto* pb = b.ptr<std::uint8_t>(y);
-        for (int x = kStride / 2; x + 1 < a.cols; x += kStride) {
+        for (int x = kColumns / 2; x + 1 < a.cols; x += kColumns) {
             // Clipped values have lost their noise.
             if (std::max({pa[x], pb[x], pa[x + 1], pb[x + 1]}) >= 250 ||
                 std::min({pa[x], pb[x], pa[x + 1], pb[x + 1]}) <= 3)

@@ -19,7 +19,7 @@ struct ImageNoise {
 /// (LEDs, people, lamps) do not count: the spread is read off the central 68 % of each brightness class.
 class ImageNoiseEstimator {
   public:
-    /// a, b: 8-bit grey of equal size, taken one after the other. Looks at one pixel in 16.
+    /// a, b: 8-bit grey of equal size, taken one after the other. Looks at one pixel in 32.
     void add(const cv::Mat& a, const cv::Mat& b);
     /// Weighted straight line through the classes; read >= 1/12 (quantisation), gain >= 0. With a single class the gain
     /// is 0, with no data at all the default noise is returned.

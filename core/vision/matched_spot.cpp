@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/vision/parallel.h"
+#include "core/vision/surroundings.h"
 
 namespace skincal {
 namespace {
@@ -64,14 +65,26 @@ std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, st
     return matches;
 }
 
+bool sharesSpot(const SeriesMatch& series, std::size_t j) {
+    constexpr double kComparable = 0.25;
+    for (std::size_t other = 0; other < series.amplitudes.size(); ++other) {
+        if (other != j && series.amplitudes[other] > kComparable * series.amplitudes[j])
+            return true;
+    }
+    return false;
+}
+
 bool hasMoreLight(const SpotScan& scan, const MatchedSpot& match) {
     constexpr double kShare = 0.2;
     const double amplitude = match.series.amplitudes[0];
     Eigen::VectorXd more = lightOf(scan, match, 0);
     for (const std::size_t plane : scan.codebook.lit[match.series.words[0]])
         more[static_cast<Eigen::Index>(plane)] -= amplitude;
-    for (std::size_t k = 0; k < match.series.used.size(); ++k) {
-        if (match.series.used[k] == 0 && more[static_cast<Eigen::Index>(k)] > kShare * amplitude)
+    const std::vector<std::uint8_t> all(match.series.used.size(), 1);
+    const std::vector<std::uint8_t> calm =
+        calmPlanes(scan.series.around.col(static_cast<Eigen::Index>(match.candidate)), scan.gains, all);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (match.series.used[k] == 0 && calm[k] != 0 && more[static_cast<Eigen::Index>(k)] > kShare * amplitude)
             return true;
     }
     return false;

@@ -22,6 +22,10 @@ struct MatchedSpot {
     std::vector<tl::expected<SpotFit, SpotFitError>> fits{};
 };
 
+/// True where another LED's light in the spot is comparable with that of the match's word j: more than a quarter of it.
+/// What is weaker is the skirt of a neighbour, with a spot of its own.
+[[nodiscard]] bool sharesSpot(const SeriesMatch& series, std::size_t j);
+
 /// The candidates whose series a word explains, or two; what else is to be said of words goes to `verdicts`. Nothing
 /// where the context asks to stop.
 [[nodiscard]] std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan,
@@ -30,7 +34,8 @@ struct MatchedSpot {
                                                                       const WordMatchOptions& options,
                                                                       const RunContext& context, Verdicts& verdicts);
 
-/// True where a disturbed plane is brighter than the first word makes it: what hides an LED makes it darker.
+/// True where a disturbed plane is brighter than the first word makes it: what hides an LED makes it darker. Who walks
+/// past may be brighter than the ground, but changes the surroundings (calmPlanes).
 [[nodiscard]] bool hasMoreLight(const SpotScan& scan, const MatchedSpot& match);
 
 /// @param module  one of those whose words match

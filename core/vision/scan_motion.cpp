@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/geometry/statistics.h"
+#include "core/vision/surroundings.h"
 
 namespace skincal {
 namespace {
@@ -35,7 +36,6 @@ void ScanMotion::watch(const SpotCandidate& spot, cv::Size picture, const Codebo
     LightFilter late = filter;
     early.words.resize(1);
     late.words.resize(1);
-    early.clipped = late.clipped = false;
     for (std::size_t k = 0; k < filter.used.size(); ++k)
         (2 * k < filter.used.size() ? late : early).used[k] = 0;
     const auto canTell = [&](const LightFilter& half) {

@@ -41,8 +41,7 @@ Explanation SeriesFit::explain(const std::vector<std::size_t>& words) const {
     }
     // The best of two starts: plain least squares, and (for single words) levels that hidden planes don't move.
     Explanation best = refine(rows, columns, words, std::vector<std::uint8_t>(codebook_.planes(), 1));
-    const bool isClean = best.significant && best.disturbed == 0 && best.reducedCost <= 1;
-    if (words.size() == 1 && !isClean) {
+    if (words.size() == 1 && !best.isClean()) {
         std::vector<std::uint8_t> used(codebook_.planes());
         (void)divide(residualsFromLevels(words[0]), used);
         Explanation other = refine(rows, columns, words, std::move(used));

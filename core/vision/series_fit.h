@@ -22,6 +22,9 @@ struct Explanation {
     double reducedCost = 0;                                 ///< of the used planes, per degree of freedom
     double explained = 0;      ///< share of the blinking in the used planes, camera noise taken off
     bool significant = false;  ///< and settled; else it may compete, but not win
+
+    /// Nothing is left to explain.
+    [[nodiscard]] bool isClean() const { return significant && disturbed == 0 && reducedCost <= 1; }
 };
 
 /// What of a series neither drift nor ambient explains.

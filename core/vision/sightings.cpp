@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "core/geometry/statistics.h"
 #include "core/vision/scan_motion.h"
 
 namespace skincal {
@@ -46,6 +47,27 @@ std::optional<std::size_t> breakOf(const std::vector<std::uint8_t>& used) {
     return std::nullopt;
 }
 
+// One lens draws all LEDs alike, but for those that are nearer than it is focused on.
+void dropStrangeWidths(std::vector<Sighting>& sightings, Verdicts& verdicts) {
+    constexpr std::size_t kFewest = 5;
+    constexpr double kAlike = 1.6;
+    constexpr double kSigmas = 3;
+    if (sightings.size() < kFewest)
+        return;
+    std::vector<double> widths;
+    for (const Sighting& sighting : sightings)
+        widths.push_back(std::log(sighting.fit.width_px));
+    const double usual = median(std::move(widths));
+    std::erase_if(sightings, [&](const Sighting& sighting) {
+        const double away = std::abs(std::log(sighting.fit.width_px) - usual);
+        const bool isStrange = away > std::log(kAlike) + kSigmas * sighting.fit.logWidthSigma;
+        if (isStrange)
+            verdicts.replace(sighting.module,
+                             {{}, DetectionVerdict::NotFound, std::string(name(SpotFitError::WrongShape))});
+        return isStrange;
+    });
+}
+
 }  // namespace
 
 std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<MatchedSpot>& matches,
@@ -62,7 +84,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             }
             // The skirt of a neighbour blinks the neighbour's word; its centre lies elsewhere. Where two LEDs share one
             // maximum, each may sit a little off it.
-            const bool shared = match.maps.size() > 1;
+            const bool shared = sharesSpot(match.series, j);
             const double allowed = shared ? options.windowRadius - 1.0 : options.maxShift_px;
             if ((fit->centre - Vector2d(match.spot.x, match.spot.y)).norm() > allowed) {
                 verdicts.note(module, DetectionVerdict::NotFound, "only stray light blinks its word");
@@ -79,6 +101,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             sightings.push_back({module, *fit, whenSeen(scan.codebook, match.series, module), i});
         }
     }
+    dropStrangeWidths(sightings, verdicts);
     // Brightest first; ties by place, so that the result does not depend on anything else.
     std::sort(sightings.begin(), sightings.end(), [](const Sighting& a, const Sighting& b) {
         return std::make_tuple(a.module, -a.fit.flux(), a.fit.centre.x(), a.fit.centre.y()) <

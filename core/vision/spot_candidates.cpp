@@ -5,12 +5,11 @@
 #include <stdexcept>
 
 #include "core/geometry/statistics.h"
+#include "core/vision/local_contrast.h"
 
 namespace skincal {
 namespace {
 
-// Fixed point keeps the smoothing in 16 bits, where it is twice as fast as in floats, without losing the noise.
-constexpr double kFixedPoint = 16;
 // Jumps are looked for at half the size, which costs a quarter.
 constexpr int kShrink = 2;
 // Sums of absolute differences of that many pictures fit into 16 bits.
@@ -86,10 +85,21 @@ std::vector<SpotCandidate> maximaOf(const cv::Mat& change, bool isHalf, const Sp
     return found;
 }
 
+// sum += |a - b|
+void addDifference(const cv::Mat& a, const cv::Mat& b, cv::Mat& sum) {
+    for (int y = 0; y < sum.rows; ++y) {
+        const auto* pa = a.ptr<std::uint8_t>(y);
+        const auto* pb = b.ptr<std::uint8_t>(y);
+        auto* to = sum.ptr<std::uint16_t>(y);
+        for (int x = 0; x < sum.cols; ++x)
+            to[x] = static_cast<std::uint16_t>(to[x] + (std::max(pa[x], pb[x]) - std::min(pa[x], pb[x])));
+    }
+}
+
 }  // namespace
 
 bool SpotCandidateOptions::validate() const {
-    return minContrast > 0 && noiseFactor > 0 && smoothing_px > 0 && smoothing_px < 10 && minDistance_px >= 1 &&
+    return minContrast > 0 && noiseFactor > 0 && smoothing_px > 0 && smoothing_px < 6 && minDistance_px >= 1 &&
            surroundings_px >= 5 && surroundings_px % 2 == 1;
 }
 
@@ -100,60 +110,57 @@ SpotFinder::SpotFinder(const SpotCandidateOptions& options) : options_(options) 
 
 void SpotFinder::add(const FramePixels& frame, bool coloured) {
     const std::size_t channels = coloured ? 3 : 1;
-    const double smoothing = options_.smoothing_px / kShrink;
-    const int reach = 2 * static_cast<int>(std::ceil(1.7 * smoothing)) + 1;
-    const int surroundings = oddHalf(options_.surroundings_px);
-    const cv::Size size(std::max(1, frame.size().width / kShrink), std::max(1, frame.size().height / kShrink));
     const bool first = last_.empty();
     if (first) {
         last_.resize(channels);
-        lastSmooth_.resize(channels);
+        lastContrast_.resize(channels);
         lastStep_.resize(channels);
         sum_ = cv::Mat::zeros(frame.size(), CV_16U);
-        jump_ = cv::Mat::zeros(size, CV_16S);
-        flash_ = cv::Mat::zeros(size, CV_16S);
+        const cv::Size half(frame.size().width / kShrink, frame.size().height / kShrink);
+        jump_ = cv::Mat::zeros(half, CV_16S);
+        flash_ = cv::Mat::zeros(half, CV_16S);
     }
-    cv::Mat small;
-    cv::Mat smooth;
-    cv::Mat local;
-    cv::Mat step;
-    cv::Mat back;
     for (std::size_t i = 0; i < channels; ++i) {
         const cv::Mat plane = frame.plane(coloured ? static_cast<int>(i) : -1);
-        // Of an odd row or column at the end nothing is seen; means of four pixels are quickly had.
-        const cv::Rect even(0, 0, kShrink * size.width, kShrink * size.height);
-        cv::resize((even & cv::Rect({}, plane.size())) == even ? plane(even) : plane, small, size, 0, 0,
-                   cv::INTER_AREA);
-        small.convertTo(smooth, CV_16S, kFixedPoint);
-        cv::GaussianBlur(smooth, smooth, cv::Size(reach, reach), smoothing);
         // A lamp that flickers in step with the frames can cancel an LED's jump: compare what stands out locally.
-        cv::blur(smooth, local, cv::Size(surroundings, surroundings));
-        cv::subtract(smooth, local, smooth);
+        cv::Mat contrast;
+        if (!jump_.empty())
+            contrast = localContrast(plane, options_.smoothing_px / kShrink, oddHalf(options_.surroundings_px));
         if (!first) {
             noise_.add(plane, last_[i]);
-            if (summed_++ < kMostSummed) {
-                cv::absdiff(plane, last_[i], small);
-                cv::add(sum_, small, sum_, cv::noArray(), CV_16U);
-            }
-            cv::subtract(smooth, lastSmooth_[i], step);
-            cv::max(jump_, cv::abs(step), jump_);
-            if (!lastStep_[i].empty()) {
-                cv::subtract(cv::Scalar(0), step, back);
-                cv::min(lastStep_[i], back, back);
-                cv::max(flash_, back, flash_);
-                cv::subtract(cv::Scalar(0), lastStep_[i], back);
-                cv::min(back, step, back);
-                cv::max(flash_, back, flash_);
-            }
-            cv::swap(lastStep_[i], step);
+            if (summed_++ < kMostSummed)
+                addDifference(plane, last_[i], sum_);
+            if (!jump_.empty())
+                noteStep(contrast, lastContrast_[i], lastStep_[i]);
         }
-        plane.copyTo(last_[i]);
-        cv::swap(lastSmooth_[i], smooth);
+        last_[i] = plane;
+        lastContrast_[i] = contrast;
+    }
+}
+
+void SpotFinder::noteStep(const cv::Mat& now, const cv::Mat& before, cv::Mat& lastStep) {
+    if (lastStep.empty())
+        lastStep = cv::Mat::zeros(now.size(), CV_16S);
+    for (int y = 0; y < now.rows; ++y) {
+        const auto* here = now.ptr<std::int16_t>(y);
+        const auto* there = before.ptr<std::int16_t>(y);
+        auto* last = lastStep.ptr<std::int16_t>(y);
+        auto* jump = jump_.ptr<std::int16_t>(y);
+        auto* flash = flash_.ptr<std::int16_t>(y);
+        for (int x = 0; x < now.cols; ++x) {
+            const auto step = static_cast<std::int16_t>(here[x] - there[x]);
+            const auto back = static_cast<std::int16_t>(-step);
+            const auto forth = static_cast<std::int16_t>(-last[x]);
+            jump[x] = std::max(jump[x], std::max(step, back));
+            // No step before this one is none that this one could take back.
+            flash[x] = std::max(flash[x], std::max(std::min(last[x], back), std::min(forth, step)));
+            last[x] = step;
+        }
     }
 }
 
 std::vector<SpotCandidate> SpotFinder::candidates(std::size_t most) const {
-    if (jump_.empty())
+    if (last_.empty())
         return {};
     std::vector<SpotCandidate> found;
     const auto append = [&](const cv::Mat& change, bool isHalf) {
@@ -168,10 +175,12 @@ std::vector<SpotCandidate> SpotFinder::candidates(std::size_t most) const {
         cv::GaussianBlur(change, change, cv::Size(), 0.5 * options_.smoothing_px);
         append(change, false);
     }
-    jump_.convertTo(change, CV_32F, 1 / kFixedPoint);
-    append(change, true);
-    flash_.convertTo(change, CV_32F, 1 / kFixedPoint);
-    append(change, true);
+    if (!jump_.empty()) {
+        jump_.convertTo(change, CV_32F, 1 / kContrastUnits);
+        append(change, true);
+        flash_.convertTo(change, CV_32F, 1 / kContrastUnits);
+        append(change, true);
+    }
 
     // A plateau (a clipped spot) has many equal maxima: keep one of each neighbourhood.
     cv::Mat taken = cv::Mat::zeros(sum_.size(), CV_8U);

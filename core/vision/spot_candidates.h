@@ -38,7 +38,8 @@ class SpotFinder {
   public:
     explicit SpotFinder(const SpotCandidateOptions& options = {});
 
-    /// Frames in the order in which they were taken, all of one size.
+    /// Frames in the order in which they were taken, all of one size. The last one is kept, not copied: its pixels must
+    /// stay as they are.
     void add(const FramePixels& frame, bool coloured);
     [[nodiscard]] ImageNoise noise() const { return noise_.estimate(); }
     /// Local maxima that rise above their surroundings by more than the noise, strongest first, at most `most`. A lamp
@@ -46,13 +47,16 @@ class SpotFinder {
     [[nodiscard]] std::vector<SpotCandidate> candidates(std::size_t most) const;
 
   private:
+    /// Updates jump_, flash_ and `lastStep`.
+    void noteStep(const cv::Mat& now, const cv::Mat& before, cv::Mat& lastStep);
+
     SpotCandidateOptions options_;
     ImageNoiseEstimator noise_;
-    std::vector<cv::Mat> last_;        ///< 8-bit plane of the frame before, one per channel
-    std::vector<cv::Mat> lastSmooth_;  ///< the same, smoothed, 16-bit, times 16
-    std::vector<cv::Mat> lastStep_;    ///< from the frame before that to it, signed
-    cv::Mat sum_;                      ///< of absolute differences from frame to frame, as large as the picture
-    int summed_ = 0;                   ///< how many there were
+    std::vector<cv::Mat> last_;          ///< 8-bit plane of the frame before, one per channel
+    std::vector<cv::Mat> lastContrast_;  ///< localContrast of it
+    std::vector<cv::Mat> lastStep_;      ///< of that from the frame before to it
+    cv::Mat sum_;                        ///< of absolute differences from frame to frame, as large as the picture
+    int summed_ = 0;                     ///< how many there were
     cv::Mat jump_;
     cv::Mat flash_;
 };

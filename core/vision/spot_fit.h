@@ -5,7 +5,6 @@
 #include <tl/expected.hpp>
 
 #include "core/geometry/se3.h"
-#include "core/vision/spot_model.h"
 
 namespace skincal {
 
@@ -13,6 +12,14 @@ enum class PixelState : unsigned char {
     Good,
     Saturated,  ///< `value` is a lower bound
     Excluded,
+};
+
+/// Weak beliefs about a spot's shape. They settle what a clipped spot leaves open and hardly touch its centre.
+struct SpotPrior {
+    double logWidth = 0.18;
+    double logWidthSigma = 0.7;
+    double halo = 0.03;
+    double haloSigma = 0.05;
 };
 
 /// Light of one LED in a small window of the picture: what it adds while it is lit, grey levels.
@@ -48,10 +55,11 @@ enum class SpotFitError {
 
 struct SpotFit {
     Vector2d centre = Vector2d::Zero();  ///< in the picture, px
-    double sigma_px = 0;   ///< standard deviation of the centre, per axis; larger where the misfit exceeds the noise
-    double width_px = 0;   ///< Gaussian sigma of the core
-    double amplitude = 0;  ///< of the core, grey levels; beyond 255 where the spot is clipped
-    double chi2 = 0;       ///< per degree of freedom
+    double sigma_px = 0;  ///< standard deviation of the centre, per axis; larger where the misfit exceeds the noise
+    double width_px = 0;  ///< Gaussian sigma of the core
+    double logWidthSigma = 0;  ///< standard deviation of its logarithm
+    double amplitude = 0;      ///< of the core, grey levels; beyond 255 where the spot is clipped
+    double chi2 = 0;           ///< per degree of freedom
     bool clipped = false;
 
     /// Light of the core, grey levels times pixels.
@@ -59,10 +67,9 @@ struct SpotFit {
 };
 
 /// Sub-pixel centre of an LED's light: maximum likelihood for a round Gaussian with a faint halo on a constant offset
-/// (SpotResiduals), every pixel weighted with its own noise, clipped pixels as lower bounds. Six unknowns.
+/// (SpotModel), every pixel weighted with its own noise, clipped pixels as lower bounds. Six unknowns.
 /// Degenerate cases are the errors of SpotFitError. Throws std::logic_error where the three arrays differ in size or
-/// the options are not valid. Ref: Winick, J. Opt. Soc. Am. A 3, 1986 (bounds); Levenberg-Marquardt by
-/// ceres::TinySolver.
+/// the options are not valid. Ref: Winick, J. Opt. Soc. Am. A 3, 1986 (bounds).
 [[nodiscard]] tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const SpotFitOptions& options = {});
 
 }  // namespace skincal

@@ -1,6 +1,8 @@
 #include "core/vision/spot_scan.h"
 
 #include "core/geometry/statistics.h"
+#include "core/vision/exposure_gains.h"
+#include "core/vision/surroundings.h"
 
 namespace skincal {
 

@@ -7,8 +7,6 @@
 #include <opencv2/core/utility.hpp>
 #include <stdexcept>
 
-#include "core/geometry/statistics.h"
-
 namespace skincal {
 namespace {
 
@@ -16,6 +14,7 @@ constexpr int kCore = 2;
 // exp(-r^2 / 2 s^2) with s = 1.2 at r = 0, 1, 2.
 constexpr std::array<double, 3> kTap{1.0, 0.70665, 0.24935};
 constexpr int kLargestRadius = 30;
+constexpr int kLevels = 3 * 255 + 1;  // of three channels together
 
 /// @param pixel  grey level of a place times some whole number, as an int
 template <class Pixel>
@@ -50,12 +49,20 @@ SpotBrightness brightness(cv::Size size, const SpotCandidate& spot, int radius, 
         visit(spot.x - radius, spot.y - i);
     }
     if (count > 0) {
+        // The darker half by counting: there are few levels, and this is done for every spot in every plane.
         const std::size_t half = (count + 1) / 2;
-        std::nth_element(edge.begin(), edge.begin() + static_cast<std::ptrdiff_t>(half - 1),
-                         edge.begin() + static_cast<std::ptrdiff_t>(count));
+        std::array<std::uint8_t, kLevels> counts{};
+        int level = kLevels;
+        for (std::size_t i = 0; i < count; ++i) {
+            ++counts[static_cast<std::size_t>(edge[i])];
+            level = std::min(level, edge[i]);
+        }
         int darker = 0;
-        for (std::size_t i = 0; i < half; ++i)
-            darker += edge[i];
+        for (std::size_t left = half; left > 0; ++level) {
+            const auto here = std::min<std::size_t>(left, counts[static_cast<std::size_t>(level)]);
+            darker += level * static_cast<int>(here);
+            left -= here;
+        }
         result.around = scale * darker / static_cast<double>(half);
     }
     result.level = scale * sum / weights;
@@ -100,9 +107,12 @@ double spotBrightnessSigma(const ImageNoise& noise, double level, int radius) {
     const double sum = kTap[0] + 2 * (kTap[1] + kTap[2]);
     const double squares = kTap[0] * kTap[0] + 2 * (kTap[1] * kTap[1] + kTap[2] * kTap[2]);
     const double core = std::pow(squares / (sum * sum), 2);
+    return std::sqrt(noise.variance(level) * core + surroundingsVariance(noise, level, radius));
+}
+
+double surroundingsVariance(const ImageNoise& noise, double around, int radius) {
     // The mean of a darker half is less sharp than that of all by about pi / 2, as a median is.
-    const double edge = std::numbers::pi / 2 / (8 * radius);
-    return std::sqrt(noise.variance(level) * (core + edge));
+    return noise.variance(around) * std::numbers::pi / 2 / (8 * radius);
 }
 
 SpotSeries::SpotSeries(std::size_t planes, std::size_t spots)
@@ -125,81 +135,6 @@ void SpotSeries::read(const FramePixels& frame, std::span<const SpotCandidate> s
                 clipped[spot] = 1;
         }
     });
-}
-
-std::vector<double> exposureGains(const SpotSeries& series, std::span<const double> sigma,
-                                  std::span<const std::size_t> litCount) {
-    constexpr double kStrong = 3;
-    constexpr std::size_t kFewest = 3;
-    constexpr double kLeastStep = 0.05;
-    const Eigen::Index planes = series.light.rows();
-    std::vector<double> gains(static_cast<std::size_t>(planes), 1);
-    std::vector<Eigen::Index> spots;
-    std::vector<double> strongest;
-    std::vector<float> values(static_cast<std::size_t>(planes));
-    for (Eigen::Index i = 0; i < series.light.cols(); ++i) {
-        // But for the top tenth, which a flash may have.
-        Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(i);
-        const auto high = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
-        std::nth_element(values.begin(), high, values.end());
-        if (static_cast<double>(*high) > kStrong * sigma[static_cast<std::size_t>(i)]) {
-            spots.push_back(i);
-            strongest.push_back(static_cast<double>(*high));
-        }
-    }
-    // Skirts and reflections shine with several LEDs at once, and tell nothing.
-    constexpr double kOfStrong = 0.2;
-    if (!strongest.empty()) {
-        std::vector<double> sorted = strongest;
-        std::sort(sorted.begin(), sorted.end());
-        const double least = kOfStrong * sorted[9 * (sorted.size() - 1) / 10];
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < spots.size(); ++i) {
-            if (strongest[i] < least)
-                continue;
-            spots[kept] = spots[i];
-            strongest[kept++] = strongest[i];
-        }
-        spots.resize(kept);
-        strongest.resize(kept);
-    }
-    std::vector<std::size_t> told;
-    std::vector<double> shares;
-    for (std::size_t k = 0; k < gains.size(); ++k) {
-        if (litCount[k] < kFewest || spots.size() < kFewest)
-            continue;
-        shares.clear();
-        for (std::size_t i = 0; i < spots.size(); ++i) {
-            const auto light = static_cast<double>(series.light(static_cast<Eigen::Index>(k), spots[i]));
-            if (light > kStrong * sigma[static_cast<std::size_t>(spots[i])])
-                shares.push_back(light / strongest[i]);
-        }
-        if (shares.size() < kFewest)
-            continue;
-        std::sort(shares.begin(), shares.end());
-        const double top = shares[9 * (shares.size() - 1) / 10];
-        const auto shining =
-            std::partition_point(shares.begin(), shares.end(), [&](double s) { return s < 0.5 * top; });
-        const auto count = static_cast<std::size_t>(shares.end() - shining);
-        // Less than that is what stray light makes of LEDs that nobody sees.
-        constexpr double kLeastShare = 0.1;
-        if (top < kLeastShare || count < kFewest)
-            continue;
-        gains[k] = *(shining + static_cast<std::ptrdiff_t>(count / 2));
-        told.push_back(k);
-    }
-    std::vector<double> all;
-    for (const std::size_t k : told)
-        all.push_back(gains[k]);
-    if (all.empty())
-        return gains;
-    const double usual = median(std::move(all));
-    for (const std::size_t k : told) {
-        gains[k] /= usual;
-        if (std::abs(gains[k] - 1) < kLeastStep)
-            gains[k] = 1;
-    }
-    return gains;
 }
 
 }  // namespace skincal

@@ -23,6 +23,9 @@ struct SpotBrightness {
 /// Standard deviation of SpotBrightness::value from camera noise, at grey level `level`.
 [[nodiscard]] double spotBrightnessSigma(const ImageNoise& noise, double level, int radius);
 
+/// Variance of SpotBrightness::around from camera noise.
+[[nodiscard]] double surroundingsVariance(const ImageNoise& noise, double around, int radius);
+
 /// True where any pixel of the spot's window is clipped.
 [[nodiscard]] bool isClippedNear(const FramePixels& frame, const SpotCandidate& spot, int radius, int channel);
 
@@ -38,15 +41,5 @@ struct SpotSeries {
     void read(const FramePixels& frame, std::span<const SpotCandidate> spots, int radius, std::size_t plane,
               int channel);
 };
-
-/// Light of LEDs in each plane relative to the scan's usual: a camera that steps its exposure changes all of them
-/// alike. The median over what shines (half as much at least as the brightest tenth) of a spot's light over the most
-/// that it has in any plane; spots that are not three times as strong as their noise are left out, and those far weaker
-/// than the strongest tenth. 1 where fewer than three LEDs shine, and for steps of less than 5 %, which LEDs make by
-/// themselves.
-/// @param sigma     per spot, of its light
-/// @param litCount  per plane, how many modules are lit in it
-[[nodiscard]] std::vector<double> exposureGains(const SpotSeries& series, std::span<const double> sigma,
-                                                std::span<const std::size_t> litCount);
 
 }  // namespace skincal

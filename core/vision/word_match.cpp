@@ -76,8 +76,13 @@ SeriesMatch WordMatcher::match(std::span<const double> series, double sigma, con
     const SeriesFit fit(codebook_, y, sigma, strength, ambient, options_);
 
     std::vector<Explanation> tried;
-    for (const RankedWord& word : ranked)
+    // Where the first leaves nothing to explain, only the next few could have been meant.
+    constexpr std::size_t kRivals = 3;
+    for (const RankedWord& word : ranked) {
+        if (tried.size() > kRivals && tried.front().isClean())
+            break;
         tried.push_back(fit.explain({word.word}));
+    }
     // A second word must earn its place, against all others that would have done.
     const double second = options_.minMargin + 2 * std::log(static_cast<double>(codebook_.lit.size()));
     const auto price = [&](const Explanation& e) { return e.cost + (e.words.size() > 1 ? second : 0.0); };

@@ -26,10 +26,13 @@ class WordRanking {
     [[nodiscard]] std::vector<RankedWord> best(const Eigen::VectorXd& y, std::size_t most) const;
 
   private:
+    void addBlock(const Eigen::VectorXd& y, std::size_t block, std::vector<float>& products) const;
+
     const Codebook& codebook_;
     std::vector<std::uint32_t> words_;  ///< those that can be told from others and from drift
     std::vector<float> inverseEnergy_;  ///< of these
-    std::vector<std::uint8_t> masks_;   ///< of these, by groups of eight planes; empty where words are sparse
+    std::vector<std::uint64_t>
+        masks_;  ///< of these, a bit per plane, 64 planes at a time; empty where words are sparse
 };
 
 }  // namespace skincal

@@ -55,6 +55,34 @@ TEST_P(AnyScheme, FindsAllWhereTheyAre) {
     EXPECT_LT(normalised / count, 1.5);
 }
 
+TEST_P(AnyScheme, ASpotFarWiderThanAllOthersIsNoLed) {
+    ScanPainter scan = scanOf(5, 12);
+    const PaintedLed wide = scan.leds.front();
+    scan.leds.front().peak = 0;
+    scan.disturb = [&](cv::Mat& light, std::size_t k) {
+        for (const LitModule& lit : scan.frames[k].lit) {
+            if (lit.module == wide.module)
+                addSpot(light, wide.pixel, 100, 2.6 * scan.width_px);
+        }
+    };
+    const ViewDetections view = decode(scan);
+    EXPECT_EQ(expectNoneWrong(scan, view), scan.leds.size() - 1);
+    const Undetected* reason = missing(view, wide.module);
+    ASSERT_NE(reason, nullptr);
+    EXPECT_THAT(reason->reason, HasSubstr("shape"));
+}
+
+TEST_P(AnyScheme, BrightGroundUnderLedsIsNoShorterExposure) {
+    ScanPainter scan = scanOf(6, 14);
+    for (PaintedLed& led : scan.leds)
+        led.peak = 40;
+    scan.disturb = [&](cv::Mat& light, std::size_t) {
+        for (const PaintedLed& led : scan.leds)
+            addSpot(light, led.pixel, 60, 1.8);
+    };
+    EXPECT_EQ(expectNoneWrong(scan, decode(scan)), scan.leds.size());
+}
+
 TEST_P(AnyScheme, FindsFaintLeds) {
     std::size_t found = 0;
     std::size_t all = 0;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/random.h"
+#include "core/vision/spot_model.h"
 
 namespace skincal {
 namespace {
@@ -100,34 +101,54 @@ TEST(SpotFit, ClippedAmplitudeIsExtrapolated) {
     }
 }
 
-TEST(SpotFit, DerivativesAreThoseOfTheFunction) {
+TEST(SpotModel, DerivativesAreThoseOfTheFunction) {
     Random random(4, "derivatives");
     for (int i = 0; i < 20; ++i) {
-        std::vector<SpotPixel> pixels;
-        for (int k = 0; k < 30; ++k)
-            pixels.push_back({random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(0, 200),
-                              random.uniform(0.2, 1), k % 3 == 0});
-        const SpotResiduals model(pixels, SpotPrior{}, 2.5);
-        const int rows = model.NumResiduals();
-        Eigen::Matrix<double, 6, 1> p;
-        p << random.uniform(-1, 1), random.uniform(-1, 1), std::log(random.uniform(20, 200)), random.uniform(-0.3, 0.6),
-            random.uniform(-5, 5), random.uniform(0, 0.1);
-        Eigen::VectorXd residuals(rows);
-        Eigen::Matrix<double, Eigen::Dynamic, 6> J(rows, 6);
-        ASSERT_TRUE(model(p.data(), residuals.data(), J.data()));
-        for (int column = 0; column < 6; ++column) {
+        Drawn drawn = drawSpot(random, random.uniform(50, 400), random.uniform(0.8, 2), 200);
+        drawn.window.state(2, 3) = PixelState::Excluded;
+        const SpotModel model(drawn.window, SpotPrior{}, 2.5);
+        SpotParameters p;
+        p << drawn.centre.x() + random.uniform(-0.5, 0.5), drawn.centre.y() + random.uniform(-0.5, 0.5),
+            std::log(random.uniform(50, 400)), random.uniform(-0.3, 0.6), random.uniform(-5, 5), random.uniform(0, 0.1);
+        const SpotModel::Normals normals = model.at(p);
+        for (Eigen::Index k = 0; k < 6; ++k) {
             constexpr double kStep = 1e-6;
-            Eigen::VectorXd above(rows);
-            Eigen::VectorXd below(rows);
-            Eigen::Matrix<double, 6, 1> q = p;
-            q[column] += kStep;
-            ASSERT_TRUE(model(q.data(), above.data(), nullptr));
-            q[column] -= 2 * kStep;
-            ASSERT_TRUE(model(q.data(), below.data(), nullptr));
-            const Eigen::VectorXd numeric = (above - below) / (2 * kStep);
-            EXPECT_LT((numeric - J.col(column)).cwiseAbs().maxCoeff(), 1e-4 * (1 + numeric.cwiseAbs().maxCoeff()));
+            SpotParameters above = p;
+            SpotParameters below = p;
+            above[k] += kStep;
+            below[k] -= kStep;
+            const double numeric = (model.at(above).cost - model.at(below).cost) / (4 * kStep);
+            EXPECT_NEAR(normals.g[k], numeric, 1e-5 * (1 + std::abs(numeric)) * std::sqrt(normals.N(k, k))) << k;
         }
     }
+}
+
+TEST(SpotModel, NormalMatrixIsHalfTheCurvatureWhereNothingIsLeftOver) {
+    SpotWindow window{0, 0, Eigen::ArrayXXd(11, 11), Eigen::ArrayXXd::Constant(11, 11, 2.0), {}};
+    window.state.setConstant(11, 11, PixelState::Good);
+    SpotPrior prior;
+    SpotParameters p;
+    p << 5.2, 4.9, std::log(150.0), prior.logWidth, 2, prior.halo;
+    const double s = std::exp(p[3]);
+    for (int row = 0; row < 11; ++row) {
+        for (int col = 0; col < 11; ++col) {
+            const double r2 = (Vector2d(col, row) - p.head<2>()).squaredNorm() / (2 * s * s);
+            window.value(row, col) = 2 + 150 * (std::exp(-r2) + prior.halo * std::exp(-r2 / 6.25));
+        }
+    }
+    const SpotModel model(window, prior, 2.5);
+    const SpotModel::Normals normals = model.at(p);
+    EXPECT_NEAR(normals.cost, 0, 1e-18);
+    Random random(5, "curvature");
+    for (int i = 0; i < 20; ++i) {
+        SpotParameters d;
+        for (Eigen::Index k = 0; k < 6; ++k)
+            d[k] = 1e-4 * random.normal() / std::sqrt(normals.N(k, k));
+        const double curved = model.at(p + d).cost + model.at(p - d).cost;
+        EXPECT_NEAR(curved / (2 * d.dot(normals.N * d)), 1, 1e-4);
+    }
+    const SpotModel::Normals least = model.minimise(p);
+    EXPECT_LT(least.cost, 1e-9);
 }
 
 TEST(SpotFit, NoiseIsNoSpot) {

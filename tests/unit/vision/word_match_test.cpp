@@ -7,6 +7,7 @@
 #include "core/vision/codebook.h"
 #include "core/vision/frame_pixels.h"
 #include "core/vision/spot_series.h"
+#include "core/vision/surroundings.h"
 #include "tests/unit/vision/scan_painter.h"
 
 namespace skincal::testing {
@@ -246,6 +247,26 @@ TEST(WordMatching, AFitThatHasNotSettledIsNone) {
         ++refused;
     }
     EXPECT_GE(refused, 50);
+}
+
+TEST(CalmPlanes, WhoPassesIsLeftOutButNoLampAndNoNeighbour) {
+    Random random(12, "calm");
+    const std::vector<double> gains(24, 1);
+    std::vector<std::uint8_t> used(24, 1);
+    used[3] = 0;
+    Eigen::VectorXf around(24);
+    for (Eigen::Index k = 0; k < 24; ++k)
+        around[k] = static_cast<float>(70 + random.normal());
+    EXPECT_EQ(calmPlanes(around, gains, used), used);
+    Eigen::VectorXf passing = around;
+    passing.segment(10, 4).array() += 40;
+    std::vector<std::uint8_t> calm = used;
+    std::fill(calm.begin() + 10, calm.begin() + 14, std::uint8_t{0});
+    EXPECT_EQ(calmPlanes(passing, gains, used), calm);
+    Eigen::VectorXf lamp = around;
+    for (Eigen::Index k = 0; k < 24; ++k)
+        lamp[k] += static_cast<float>(50 * std::sin(2.1 * static_cast<double>(k)));
+    EXPECT_EQ(calmPlanes(lamp, gains, used), used);
 }
 
 TEST(AmplitudeMap, AWordThatNeverBlinksThrows) {

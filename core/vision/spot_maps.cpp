@@ -1,0 +1,46 @@
+#include "core/vision/spot_maps.h"
+
+#include "core/vision/neighbourhood.h"
+#include "core/vision/parallel.h"
+
+namespace skincal {
+
+void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& options, std::vector<MatchedSpot>& matches,
+                 ScanMotion& motion) {
+    constexpr std::size_t kMostNeighbours = 12;
+    constexpr std::size_t kWatched = 100;
+    // A halo of a few per cent reaches as far as that.
+    const Neighbourhood neighbourhood(matches, options.windowRadius + 5);
+    const auto filterOf = [&](const MatchedSpot& match, std::size_t j, const std::vector<std::size_t>& around) {
+        LightFilter filter;
+        filter.words = {match.series.words[j]};
+        filter.used = match.series.used;
+        filter.around = scan.series.around.col(static_cast<Eigen::Index>(match.candidate));
+        filter.gains = scan.gains;
+        filter.sigma = scan.sigma[match.candidate];
+        filter.shared = sharesSpot(match.series, j);
+        filter.clipped = scan.series.clipped[match.candidate] != 0;
+        for (std::size_t other = 0; other < match.series.words.size(); ++other) {
+            if (other != j)
+                filter.words.push_back(match.series.words[other]);
+        }
+        filter.words.insert(filter.words.end(), around.begin(), around.end());
+        return filter;
+    };
+    (void)forEach(matches.size(), {}, [&](std::size_t i) {
+        MatchedSpot& match = matches[i];
+        const std::vector<std::size_t> around = neighbourhood.wordsAround(i, kMostNeighbours);
+        for (std::size_t j = 0; j < match.series.words.size(); ++j)
+            match.maps.emplace_back(match.spot, options.windowRadius, size, scan.codebook, filterOf(match, j, around));
+    });
+    std::size_t watched = 0;
+    const std::size_t every = 1 + matches.size() / kWatched;
+    for (std::size_t i = 0; i < matches.size() && watched < kWatched; i += every) {
+        if (matches[i].series.words.size() == 1) {
+            motion.watch(matches[i].spot, size, scan.codebook, filterOf(matches[i], 0, {}));
+            ++watched;
+        }
+    }
+}
+
+}  // namespace skincal

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/simulation/renderer.h"
 #include "core/vision/frame.h"

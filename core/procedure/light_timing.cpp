@@ -18,7 +18,7 @@ struct Bounds {
     [[nodiscard]] Time contradiction() const { return std::max(greatestAfter() - leastUntil(), Time{}); }
 };
 
-Time medianPeriod(std::span<const LightToggle> toggles) {
+std::vector<Time> stepsBetween(std::span<const LightToggle> toggles) {
     std::vector<Time> steps;
     for (const LightToggle& toggle : toggles) {
         for (std::size_t i = 1; i < toggle.pictures.size(); ++i) {
@@ -27,9 +27,23 @@ Time medianPeriod(std::span<const LightToggle> toggles) {
                 throw std::logic_error("LightToggle: times of pictures don't rise");
         }
     }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
+    return steps;
+}
+
+Time median(std::vector<Time> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
     return *middle;
+}
+
+/// How far pictures come from whole periods after each other.
+Time unsteadiness(const std::vector<Time>& steps, Time period) {
+    Time worst{};
+    for (const Time step : steps) {
+        const Time off = step % period;
+        worst = std::max(worst, std::min(off, period - off));
+    }
+    return worst;
 }
 
 }  // namespace
@@ -59,8 +73,9 @@ tl::expected<LightTiming, LightTimingError> estimateLightTiming(std::span<const 
         none.until.push_back(touched->time - toggle.commanded);
         timing.answer = std::max(timing.answer, toggle.acknowledged - toggle.commanded);
     }
-    timing.period = medianPeriod(toggles);
-    timing.jitter = std::max(all.contradiction(), none.contradiction());
+    const std::vector<Time> steps = stepsBetween(toggles);
+    timing.period = median(steps);
+    timing.jitter = std::max({all.contradiction(), none.contradiction(), unsteadiness(steps, timing.period)});
     if (timing.jitter > options.maxJitter)
         return tl::unexpected(LightTimingError::TooJittery);
     timing.latency = (all.greatestAfter() + all.leastUntil()) / 2;

@@ -35,7 +35,7 @@ struct LightTiming {
 
     Time latency{};      ///< from an LED's change to the first picture that shows all of it, most likely
     Time uncertainty{};  ///< latency lies within +- this, but for jitter
-    Time jitter{};       ///< by which toggles contradict each other at least; 0 where they agree
+    Time jitter{};       ///< by which toggles contradict each other at least, or pictures are off their period
     Time newFrom{};
     Time oldUntil{};
     Time period{};  ///< between two pictures

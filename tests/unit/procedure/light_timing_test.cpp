@@ -95,6 +95,19 @@ TEST(LightTiming, TellsJitterWhereTogglesContradictEachOther) {
     }
 }
 
+TEST(LightTiming, TellsJitterOfThePicturesTimes) {
+    Random random(7, "unsteady");
+    for (int run = 0; run < 200; ++run) {
+        Camera camera;
+        camera.jitter = between(random, 2ms, 8ms);
+        camera.dropped = 0.05;
+        const auto timing = estimateLightTiming(camera.watch(random, 3, 0ms, 2ms));
+        ASSERT_TRUE(timing);
+        EXPECT_GT(timing->jitter, camera.jitter / 4);
+        EXPECT_LE(timing->jitter, 4 * camera.jitter);
+    }
+}
+
 TEST(LightTiming, SaysWhatItCouldNotDo) {
     Random random(3, "failures");
     const Camera camera;

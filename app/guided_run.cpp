@@ -14,9 +14,15 @@ constexpr int kScanTries = 3;
 
 /// How the light was timed, for the log of who looks for what is slow.
 QString timingOf(const ScanRun& run) {
-    if (!run.timing || !run.plan)
-        return QStringLiteral("its light could not be timed, so pictures were taken one by one");
+    if (!run.timing)
+        return QStringLiteral("light could not be timed, so pictures were taken one by one");
     const auto ms = [](ScanRun::Time time) { return std::chrono::round<std::chrono::milliseconds>(time).count(); };
+    if (!run.plan)
+        return QStringLiteral(
+                   "light shows %1 ± %2 ms after its command, but patterns could not follow each other at the camera's "
+                   "rate, so pictures were taken one by one")
+            .arg(ms(run.timing->latency))
+            .arg(ms(run.timing->uncertainty));
     return QStringLiteral(
                "by the pictures' times light shows %1 ± %2 ms after its command (jitter %3 ms); "
                "each pattern was lit for %4 pictures")

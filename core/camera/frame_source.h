@@ -46,6 +46,10 @@ class FrameSource : public QObject {
             std::chrono::steady_clock::now().time_since_epoch());
     }
 
+    /// Whether one picture may equal the one before it to the last pixel: what was compressed does where nothing moves.
+    /// From a sensor it is the same picture come twice.
+    [[nodiscard]] virtual bool mayStandStill() const { return false; }
+
     /// What became of the controls that should stand still while pictures are taken; empty where nothing is to be said
     /// of them: before they are locked, and of what is no camera.
     [[nodiscard]] virtual std::vector<ControlState> controls() const { return {}; }

@@ -29,6 +29,7 @@ class MediaSource : public VideoSource {
     [[nodiscard]] std::optional<std::pair<double, double>> exposureRange() const override { return std::nullopt; }
     [[nodiscard]] std::optional<double> exposure() const override { return std::nullopt; }
     void setExposure(double) override {}
+    [[nodiscard]] bool mayStandStill() const override { return true; }
     void start() override;
 
   protected:

@@ -17,6 +17,8 @@ constexpr auto kFlush = 20ms;
 constexpr SkinClient::Time kBoot = 5s;
 constexpr SkinClient::Time kProgramStart = 15s;
 constexpr auto kWatch = 500ms;
+/// Where the port is there and does not serve: another program may have it.
+constexpr auto kWatchAgain = 3s;
 constexpr auto kRestPeriod = 100ms;
 /// Of what the line carries, for streams: the rest is for lights and questions.
 constexpr double kStreamShare = 0.5;
@@ -53,7 +55,6 @@ SkinWorker::SkinWorker(LineAddress address) : address_(std::move(address)), time
     timer_.setSingleShot(true);
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &SkinWorker::pump);
-    watch_.setInterval(kWatch);
     connect(&watch_, &QTimer::timeout, this, &SkinWorker::watchPort);
     flush_.setInterval(kFlush);
     connect(&flush_, &QTimer::timeout, this, &SkinWorker::flushStreams);
@@ -118,9 +119,10 @@ void SkinWorker::shut() {
 
 void SkinWorker::lose(LineFault fault, const QString& detail) {
     fail(lineHelp(fault, address_, detail));
-    isReturning_ = isReturning_ || (fault == LineFault::Ended && address_.kind == LineAddress::Kind::Serial);
+    const bool isAgain = isReturning_;
+    isReturning_ = isAgain || (fault == LineFault::Ended && address_.kind == LineAddress::Kind::Serial);
     if (isReturning_)
-        watch_.start();
+        watch_.start(isAgain && fault != LineFault::Ended ? kWatchAgain : kWatch);
 }
 
 void SkinWorker::watchPort() {
@@ -231,7 +233,7 @@ void SkinWorker::onFault(SkinFault fault) {
         fail(wordsFor(fault, address_));
         // Plugged in again, it may take its time to start, or be pulled in the middle of that.
         if (isReturning_)
-            watch_.start();
+            watch_.start(kWatch);
     });
 }
 

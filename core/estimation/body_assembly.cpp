@@ -189,9 +189,9 @@ constexpr double kGravityUsable = 0.5;
 
 /// What the covariances say, m and rad per axis; nothing without covariances.
 struct Uncertainty {
-    double position = 0;  ///< rms over the modules
-    double rotation = 0;  ///< likewise
-    ModuleId worst{};     ///< whose position is known least
+    double position = 0;                ///< rms over the modules
+    double rotation = 0;                ///< likewise
+    const BodyModule* worst = nullptr;  ///< whose position is known least
     double worstPosition = 0;
 };
 std::optional<Uncertainty> uncertaintyOf(const BodyModel& body) {
@@ -207,7 +207,7 @@ std::optional<Uncertainty> uncertaintyOf(const BodyModel& body) {
         position += square;
         ++count;
         if (std::sqrt(square) > found.worstPosition) {
-            found.worst = module.id;
+            found.worst = &module;
             found.worstPosition = std::sqrt(square);
         }
     }
@@ -240,8 +240,9 @@ Trust judgeUncertainty(BodyQuality& quality, const Uncertainty& found) {
             fmt::format("what was measured fixes modules to {:.1f} mm and {:.1f}° only: add gravity poses and views",
                         found.position * 1e3, found.rotation / kDegree));
     else if (found.worstPosition > kWorstGood)
-        quality.warnings.push_back(fmt::format("what was measured fixes module {} to {:.1f} mm only: show it in a view",
-                                               found.worst.value, found.worstPosition * 1e3));
+        quality.warnings.push_back(fmt::format(
+            "what was measured fixes module {} to {:.1f} mm only: show it in a view{}", found.worst->id.value,
+            found.worstPosition * 1e3, found.worst->seen ? " from another side" : ""));
     else
         return Trust::Good;
     return within(kUncertaintyUsable) ? Trust::Usable : Trust::NotToBeTrusted;

@@ -30,7 +30,7 @@ std::vector<Time> stepsBetween(std::span<const LightToggle> toggles) {
     return steps;
 }
 
-Time median(std::vector<Time> values) {
+Time upperMedian(std::vector<Time> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -74,7 +74,7 @@ tl::expected<LightTiming, LightTimingError> estimateLightTiming(std::span<const 
         timing.answer = std::max(timing.answer, toggle.acknowledged - toggle.commanded);
     }
     const std::vector<Time> steps = stepsBetween(toggles);
-    timing.period = median(steps);
+    timing.period = upperMedian(steps);
     timing.jitter = std::max({all.contradiction(), none.contradiction(), unsteadiness(steps, timing.period)});
     if (timing.jitter > options.maxJitter)
         return tl::unexpected(LightTimingError::TooJittery);

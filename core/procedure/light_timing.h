@@ -46,7 +46,7 @@ struct LightTiming {
 
 enum class LightTimingError {
     NoChange,    ///< a toggle does not show in the pictures
-    TooJittery,  ///< it shows now early, now late
+    TooJittery,  ///< it shows now early, now late, or pictures come at odd times
 };
 
 struct LightTimingOptions {
@@ -67,7 +67,8 @@ struct LightTimingOptions {
 /// What toggles say of the time from a command to the pictures that show it. Each toggle j confines the latency L:
 ///   last picture without all of it - acknowledged_j  <  L  <=  first picture with all of it - commanded_j
 /// and likewise oldUntil. Toggles at different times within a picture's period confine it the more. Where no L suits
-/// all, they jitter by what is between them, and newFrom and oldUntil are those of the worst.
+/// all, they jitter by what is between them, and newFrom and oldUntil are those of the worst. Pictures that don't come
+/// whole periods after each other jitter by how far they are off.
 /// @param toggles  two or more, each with three or more pictures, else std::logic_error; also where times don't rise
 [[nodiscard]] tl::expected<LightTiming, LightTimingError> estimateLightTiming(std::span<const LightToggle> toggles,
                                                                               const LightTimingOptions& options = {});

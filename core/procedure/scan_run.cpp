@@ -129,6 +129,7 @@ struct Stepper {
         Result result{state};
         ScanRun& next = result.state;
         next.newest = picture.time;
+        next.newestCame = picture.now;
         if (next.toggles.empty()) {
             if (next.isAnswered && picture.time >= next.showsFrom)
                 toggle(result, picture);
@@ -202,7 +203,7 @@ struct Stepper {
         if (next.phase != Phase::Streaming || !next.isAnswered || next.queue.empty() || !next.newest)
             return;
         // Nothing is lit for a camera that is silent.
-        if (now - *next.newest > plan.from + 4 * plan.period)
+        if (now - next.newestCame > 4 * plan.period)
             return;
         std::optional<Time> at;
         if (next.keepsTime)
@@ -219,6 +220,7 @@ struct Stepper {
         Result result{state};
         ScanRun& next = result.state;
         next.newest = picture.time;
+        next.newestCame = picture.now;
         const LightPlan& plan = *next.plan;
         const auto isLeft = [&](std::size_t frame) {
             return std::binary_search(next.left.begin(), next.left.end(), frame);

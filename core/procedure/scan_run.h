@@ -63,7 +63,8 @@ struct ScanRun {
     std::optional<LightPlan> plan{};      ///< where it is of use
     std::vector<LightShow> shows{};       ///< those that a picture may still show
     std::vector<std::size_t> queue{};     ///< frames that are to be lit yet, or again
-    std::optional<Time> newest{};         ///< picture
+    std::optional<Time> newest{};         ///< picture, by its own time
+    Time newestCame{};                    ///< when it came
     int misses = 0;                       ///< shows in a row that no picture was kept of
 
     [[nodiscard]] bool isRunning() const { return phase >= Phase::Timing && phase <= Phase::Settling; }

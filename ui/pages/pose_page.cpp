@@ -160,7 +160,7 @@ void PosePage::showLive() {
             : tr("Measuring …"));
     if (const auto angle = presenter_.angleToTarget(); angle && presenter_.state().phase == Phase::Captured)
         instruction_->setText((presenter_.verdict() == PoseVerdict::Enough
-                                   ? tr("Captured. One more would be the ring, %1° away.")
+                                   ? tr("Captured. The next best pose is the ring, %1° away.")
                                    : tr("Captured. Turn the body by %1°, until the dot lies in the ring."))
                                   .arg(*angle / kDegree, 0, 'f', 0));
 }

@@ -129,9 +129,9 @@ std::vector<std::pair<QString, QString>> ResultPage::figuresOf(const Solution& s
                                       [](const BodyModule& module) { return module.T_body_module && !module.seen; });
     rows.emplace_back(tr("Placed by gravity and links alone"), QString::number(unseen));
     if (const auto sigmas = positionSigmas(body); !sigmas.empty()) {
-        rows.emplace_back(tr("Position from the first view, σ (median)"),
+        rows.emplace_back(tr("Position relative to the first view, σ (median)"),
                           tr("%1 mm").arg(1e3 * sigmas[sigmas.size() / 2], 0, 'f', 2));
-        rows.emplace_back(tr("Position from the first view, σ (worst)"),
+        rows.emplace_back(tr("Position relative to the first view, σ (worst)"),
                           tr("%1 mm").arg(1e3 * sigmas.back(), 0, 'f', 2));
     }
     const auto add = [&](const QString& name, const std::optional<double>& value, double factor, const QString& unit,

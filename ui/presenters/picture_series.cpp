@@ -122,7 +122,7 @@ void PictureSeries::attachCamera() {
 
 void PictureSeries::take(const CameraFrame& frame) {
     // One that comes twice shows what was lit before, whatever its time says.
-    const bool isAgain = isSamePicture(frame.image, newest_.image);
+    const bool isAgain = !workbench_.camera()->mayStandStill() && isSamePicture(frame.image, newest_.image);
     newest_ = frame;
     if (!state_.isRunning() || isAgain)
         return;

@@ -175,7 +175,10 @@ QString modules(const BodyModel& body) {
 QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
     std::vector<std::string> reasons = body.quality.warnings;
     for (const auto* more : {&body.quality.missing, &facts.shortfalls})
-        reasons.insert(reasons.end(), more->begin(), more->end());
+        // The verdict may have named a shortfall.
+        std::copy_if(more->begin(), more->end(), std::back_inserter(reasons), [&](const std::string& reason) {
+            return std::find(reasons.begin(), reasons.end(), reason) == reasons.end();
+        });
     QString html = QStringLiteral(
                        "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>%1</title>\n"
                        "<style>body { font-family: sans-serif; margin: 2em; } table { border-collapse: "

@@ -181,7 +181,7 @@ void MainWindow::buildToolBar() {
         QAction* action = bar->addAction(word);
         action->setObjectName(QLatin1String(name));
         action->setShortcut(key);
-        action->setEnabled(false);
+        action->setEnabled(false);  // a window begins with a session in which nothing was decided
         connect(action, &QAction::triggered, &undo, work);
         connect(&undo, canWork, action, &QAction::setEnabled);
         connect(&undo, described, action, [action, word](const QString& what) {

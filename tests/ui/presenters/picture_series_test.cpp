@@ -48,6 +48,34 @@ class LateCamera : public FrameSource {
     Time now_{10s};
 };
 
+/// A video, in which nothing moves.
+class StillVideo : public LateCamera {
+  public:
+    [[nodiscard]] bool mayStandStill() const override { return true; }
+    void deliver(Time exposed) { emit frameArrived({cv::Mat(6, 8, CV_8U, cv::Scalar(7)), exposed, 0}); }
+};
+
+TEST(PictureSeries, KeepsPicturesOfAVideoThoughNothingMoves) {
+    Workbench workbench;
+    workbench.skinOffers.push_back({"skin", "", [] { return std::make_unique<PatientSkin>(); }});
+    workbench.cameraOffers.push_back({"video", "", [] { return std::make_unique<StillVideo>(); }});
+    workbench.chooseSkin(0);
+    workbench.chooseCamera(0);
+    auto& skin = static_cast<PatientSkin&>(*workbench.skin());
+    auto& video = static_cast<StillVideo&>(*workbench.camera());
+    PictureSeries series(workbench);
+    const QSignalSpy kept(&series, &PictureSeries::kept);
+    series.start({{}, {{ModuleId(1), {}}}});
+    for (int frame = 0; frame < 2; ++frame) {
+        video.now_ += 1s;
+        skin.show();
+        video.deliver(video.now_);
+        video.deliver(video.now_ + 150ms);
+        EXPECT_EQ(kept.count(), frame + 1);
+    }
+    series.finish();
+}
+
 TEST(PictureSeries, KeepsNoPictureThatWasExposedBeforeItsLightShowed) {
     Workbench workbench;
     workbench.skinOffers.push_back({"skin", "", [] { return std::make_unique<PatientSkin>(); }});

@@ -151,7 +151,9 @@ TEST(LightPlan, TakesTwoPeriodsForAWebcamOf30PicturesASecond) {
         const auto plan = planLights(*timing, true);
         ASSERT_TRUE(plan);
         EXPECT_EQ(plan->periods, 2);
-        EXPECT_LT(planLights(*timing, false)->from, plan->from) << "commands may fall anywhere between pictures";
+        const auto atOnce = planLights(*timing, false);
+        ASSERT_TRUE(atOnce);
+        EXPECT_LT(atOnce->from, plan->from) << "commands may fall anywhere between pictures";
     }
 }
 

@@ -42,6 +42,7 @@ ScanRun stateIn(Phase phase) {
     state.repeats = isWhole ? 0 : 1;
     state.showsFrom = 1s;
     state.newest = 890ms;
+    state.newestCame = 895ms;
     state.isTimed = phase == Timing || phase == Streaming;
     state.keepsTime = true;
     if (phase == Timing)

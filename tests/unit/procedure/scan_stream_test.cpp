@@ -304,6 +304,21 @@ TEST(ScanStream, OneByOneWhereLightCannotBeTimed) {
         bench.run(8);
         EXPECT_EQ(bench.state.phase, Phase::Decoding);
         EXPECT_EQ(bench.wrong, 0) << seed;
+        EXPECT_FALSE(bench.streamed) << seed;
+    }
+}
+
+TEST(ScanStream, PicturesMayComeLongAfterTheyWereTaken) {
+    Random random(5, "delivery");
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        Desk desk;
+        desk.latency = 5ms;  // times are of the exposure itself
+        desk.delivery = std::chrono::milliseconds(150 + random.index(200));
+        Bench bench(desk, seed);
+        bench.run(20);
+        ASSERT_EQ(bench.state.phase, Phase::Decoding) << seed;
+        EXPECT_EQ(bench.wrong, 0) << seed;
+        EXPECT_TRUE(bench.streamed) << seed;
     }
 }
 

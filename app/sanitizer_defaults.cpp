@@ -1,6 +1,6 @@
-// Only in builds with the address sanitizer: graphics drivers, GStreamer (whose memory is GLib's), PulseAudio and D-Bus are
-// loaded for as long as the program runs and leave behind what they allocate once. They must stay loaded to have names
-// in the leak report, and only they are excused.
+// Only in builds with the address sanitizer: graphics drivers, GStreamer (whose memory is GLib's), PulseAudio and D-Bus
+// are loaded for as long as the program runs and leave behind what they allocate once. They must stay loaded to have
+// names in the leak report, and only they are excused.
 
 extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier)
 extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)

@@ -51,7 +51,7 @@ DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, Q
     table_->horizontalHeader()->setStretchLastSection(true);
     table_->setWordWrap(false);
     for (const int column : {DetectionModel::Module, DetectionModel::Residual, DetectionModel::Sigma})
-        table_->setColumnWidth(column, 76);
+        table_->setColumnWidth(column, 92);  // with the arrow of what it is sorted by
     table_->setColumnWidth(DetectionModel::State, 110);
     // All of the width: the reason is the longest column, and the one that is read.
     rows->addWidget(table_, 1);

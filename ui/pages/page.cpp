@@ -19,6 +19,11 @@ int Page::heightForWidth(int width) const {
     return layout_->minimumHeightForWidth(width);
 }
 
+void keepTwoLines(QLabel& label) {
+    label.setProperty("twoLines", true);
+    label.setAlignment(Qt::AlignLeft | Qt::AlignVCenter);
+}
+
 QLabel* mutedLabel(const QString& text) {
     auto* label = new QLabel(text);
     label->setProperty("muted", true);

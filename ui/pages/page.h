@@ -25,6 +25,9 @@ class Page : public QWidget {
     QVBoxLayout* layout_;
 };
 
+/// Buttons below do not move under the pointer when a sentence gets shorter.
+void keepTwoLines(QLabel& label);
+
 /// A line of small print.
 [[nodiscard]] QLabel* mutedLabel(const QString& text = {});
 

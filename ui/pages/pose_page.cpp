@@ -42,6 +42,7 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
       inspected_(mutedLabel()) {
     instruction_->setObjectName(QStringLiteral("instruction"));
     instruction_->setWordWrap(true);
+    keepTwoLines(*instruction_);
     body().addWidget(instruction_);
     verdict_->setObjectName(QStringLiteral("poseVerdict"));
     verdict_->setWordWrap(true);

@@ -1,5 +1,6 @@
 #include "ui/pages/views_page.h"
 
+#include <QEvent>
 #include <QPushButton>
 #include <QSplitter>
 
@@ -27,6 +28,7 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview
       picture_(new PictureView) {
     instruction_->setObjectName(QStringLiteral("instruction"));
     instruction_->setWordWrap(true);
+    keepTwoLines(*instruction_);
     body().addWidget(instruction_);
     body().addWidget(reason_);
     auto* buttons = new QHBoxLayout;
@@ -60,6 +62,9 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview
     connect(move_, &QPushButton::clicked, this, [this] {
         hasMoved_ = true;
         presenter_.moveCamera();
+        // What was seen from the old place holds no more.
+        preview_.setActive(false);
+        preview_.setActive(isActive_);
         refresh();
     });
     connect(&scan, &ScanPresenter::scanned, this, [this] {
@@ -83,6 +88,13 @@ void ViewsPage::setActive(bool active) {
     scan_.setActive(active);
     preview_.setActive(active);
     refresh();
+}
+
+void ViewsPage::changeEvent(QEvent* event) {
+    // The hint's colour is one of the theme's.
+    if (event->type() == QEvent::PaletteChange)
+        showHint();
+    Page::changeEvent(event);
 }
 
 void ViewsPage::refresh() {

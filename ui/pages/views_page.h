@@ -17,6 +17,9 @@ class ViewsPage : public Page {
 
     void setActive(bool active) override;
 
+  protected:
+    void changeEvent(QEvent* event) override;
+
   signals:
     /// The operator wants to scan from here.
     void scanAsked();

@@ -45,6 +45,7 @@ QString Theme::styleSheet() const {
                "QLabel[attention=\"true\"] { color: %8; }"
                "QLabel[good=\"true\"] { color: %4; font-weight: 600; }"
                "QLabel#instruction { font-size: 12pt; font-weight: 600; }"
+               "QLabel[twoLines=\"true\"] { min-height: 2.6em; }"
                "QFrame#card { background: %3; border: 1px solid %1; border-radius: 6px; }"
                "QTableView, QListView, QPlainTextEdit { background: %3; border: 1px solid %1; border-radius: 4px; "
                "gridline-color: %1; }"

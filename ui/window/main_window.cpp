@@ -108,8 +108,12 @@ void MainWindow::showStep(Step step) {
     stepList_->setCurrentIndex(steps_.index(static_cast<int>(indexOf(step))));
 }
 
-void MainWindow::goBy(int steps) {
-    showStep(kSteps.at(indexOf(step()) + static_cast<std::size_t>(steps)));
+std::optional<Step> MainWindow::stepAfter() const {
+    // Who scanned the last view that was needed need not be sent back to move the camera.
+    if (step() == Step::Scan && steps_.states().at(indexOf(Step::Views)).status == StepStatus::Done)
+        return Step::Result;
+    const std::size_t row = indexOf(step()) + 1;
+    return row < kSteps.size() ? std::optional(kSteps.at(row)) : std::nullopt;
 }
 
 void MainWindow::setDark(bool dark) {
@@ -173,10 +177,10 @@ void MainWindow::refresh() {
     back_->setVisible(row > 0);
     if (row > 0)
         back_->setText(tr("‹ %1").arg(nameOf(kSteps.at(row - 1))));
-    const bool hasNext = row + 1 < kSteps.size();
-    next_->setVisible(hasNext);
-    if (hasNext) {
-        next_->setText(tr("%1 ›").arg(nameOf(kSteps.at(row + 1))));
+    const auto after = stepAfter();
+    next_->setVisible(after.has_value());
+    if (after) {
+        next_->setText(tr("%1 ›").arg(nameOf(*after)));
         const StepStatus status = steps_.states().at(row).status;
         setPrimary(next_, status == StepStatus::Done);
     }

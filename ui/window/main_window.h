@@ -63,8 +63,8 @@ class MainWindow : public QMainWindow {
     [[nodiscard]] QWidget* buildSteps();
     [[nodiscard]] QWidget* buildNavigation();
     void offerNewest(const SessionKeeper& keeper);
-    /// To a step so many further down.
-    void goBy(int steps);
+    /// The step that the button leads on to; nothing after the last.
+    [[nodiscard]] std::optional<Step> stepAfter() const;
     void showBody();
     void refresh();
     void jumpTo(int problem);

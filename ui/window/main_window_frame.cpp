@@ -116,8 +116,11 @@ QWidget* MainWindow::buildNavigation() {
     row->addWidget(back_);
     row->addStretch();
     row->addWidget(next_);
-    connect(back_, &QPushButton::clicked, this, [this] { goBy(-1); });
-    connect(next_, &QPushButton::clicked, this, [this] { goBy(1); });
+    connect(back_, &QPushButton::clicked, this, [this] { showStep(kSteps.at(static_cast<std::size_t>(step()) - 1)); });
+    connect(next_, &QPushButton::clicked, this, [this] {
+        if (const auto after = stepAfter())
+            showStep(*after);
+    });
     return bar;
 }
 

@@ -90,7 +90,7 @@ void ProblemList::paintEvent(QPaintEvent* event) {
         return;
     QPainter painter(viewport());
     painter.setPen(Theme::current().muted);
-    painter.drawText(viewport()->rect(), Qt::AlignCenter, tr("Nothing is wrong, and nothing is missing."));
+    painter.drawText(viewport()->rect(), Qt::AlignCenter, tr("No problems."));
 }
 
 }  // namespace skincal

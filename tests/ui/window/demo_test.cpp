@@ -58,7 +58,8 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     for (int view = 1; view < 10 && !isViewsDone(); ++view) {
         ASSERT_TRUE(driven.moveCameraOn());
         if (view == 1) {
-            ASSERT_TRUE(driven.waitFor([&] { return hint->text().contains("patch"); })) << "what a scan would find";
+            ASSERT_TRUE(driven.waitFor([&] { return hint->text().contains("In the picture"); }))
+                << "what a scan would find";
             driven.takePicture("5-views");
         }
         bool isTaken = view != 1;

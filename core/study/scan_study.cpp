@@ -312,8 +312,12 @@ ScanScore scoreScan(World world, const ScanCase& what, const RunContext& context
     result.views = 1;
     result.frames = frames.size();
     std::vector<std::optional<double>> bounds;
-    if (isSteady(what.disturbance) && !pictures.empty())
+    if (isSteady(what.disturbance) && !pictures.empty()) {
+        // Not every detector has looked at all of them.
+        for (std::size_t k = 0; k < frames.size(); ++k)
+            (void)load(k);
         bounds = centreBounds(world, renderer.spots(), frames, pictures);
+    }
     score(world, *view, bounds, result);
     return result;
 }

@@ -101,6 +101,12 @@ TEST(ScanStudy, CodedScansFindWhatThePapersScanLosesToAScreen) {
     EXPECT_GE(coded.foundShare(), 0.995);
 }
 
+TEST(ScanStudy, ComparesThePapersScanWithTheBoundThoughItSkipsPictures) {
+    const ScanScore paper = scoreUpTo(Disturbance::Ambient, 0, 7, ScanMethod::PaperSingle);
+    EXPECT_GT(paper.found, 0U);
+    EXPECT_EQ(paper.wrong, 0U);
+}
+
 TEST(ScanStudy, TablesAndPlotsNameEveryCase) {
     ScanStudyOptions options;
     options.seeds = 1;

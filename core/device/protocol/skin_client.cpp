@@ -239,7 +239,8 @@ void SkinClient::takeCellInfo(CellNumber number, std::string_view payload, Time 
     cell.ports = static_cast<int>(std::min<std::uint32_t>(info->ports(), 255));
     cell.firmware = info->firmware();
     for (const auto& heard : info->heard())
-        if (heard.port() < info->ports() && heard.cell() <= cells_ && heard.neighbour_port() < 256)
+        if (heard.port() < static_cast<std::uint32_t>(cell.ports) && heard.cell() <= cells_ &&
+            heard.neighbour_port() < 256)
             cell.heard.push_back({static_cast<int>(heard.port()), static_cast<CellNumber>(heard.cell()),
                                   static_cast<int>(heard.neighbour_port())});
     const bool known = described_[number];

@@ -30,6 +30,17 @@ QString beginningOf(const std::string& bytes, int lines) {
     return end < 0 || end == text.size() ? text : text.left(end) + QStringLiteral("…");
 }
 
+/// Empty where the file was written. Nobody looks into the job's future: what is thrown is told, too.
+QString complaintOfWriting(const std::filesystem::path& file, const std::function<std::string()>& make) {
+    try {
+        const auto result = writeFileAtomically(file, make());
+        return result ? QString() : QString::fromStdString(result.error().message());
+    } catch (const std::exception& error) {
+        return ExportPresenter::tr("%1 could not be written: %2")
+            .arg(QString::fromStdString(file.string()), QString::fromUtf8(error.what()));
+    }
+}
+
 }  // namespace
 
 ExportPresenter::ExportPresenter(Workbench& workbench, QObject* parent) : QObject(parent), workbench_(workbench) {
@@ -120,8 +131,7 @@ void ExportPresenter::write(std::size_t format, const std::filesystem::path& fil
     }
     ++writing_;
     auto work = [this, file, placed, facts = factsOf(*placed), make = formats_.at(format).bytes] {
-        const auto result = writeFileAtomically(file, make(*placed, facts));
-        const QString why = result ? QString() : QString::fromStdString(result.error().message());
+        const QString why = complaintOfWriting(file, [&] { return make(*placed, facts); });
         QMetaObject::invokeMethod(
             this,
             [this, file, placed, why] {

@@ -32,17 +32,28 @@ void letPass(int milliseconds) {
         QCoreApplication::processEvents(QEventLoop::AllEvents, milliseconds);
 }
 
-TEST(Unplug, AtAnyMomentIsNoticedAndTheSameModulesComeBack) {
-    SimulatedRig rig(*findScenario("arm"), 3);
-    WiredSkin wired(rig, {});
-    const QTemporaryDir directory;
-    const QString link = QDir(directory.path()).filePath(QStringLiteral("skin"));
-    PseudoTerminal terminal;
-    QObject::connect(&terminal, &PseudoTerminal::received, &wired, &WiredSkin::receive);
-    QObject::connect(&wired, &WiredSkin::sent, &terminal, &PseudoTerminal::write);
-    ASSERT_EQ(terminal.open(link), QString());
+/// A simulated skin behind a pseudo-terminal, and the device at the other end of it, not opened yet.
+class Unplug : public testing::Test {
+  protected:
+    void SetUp() override {
+        QObject::connect(&terminal, &PseudoTerminal::received, &wired, [this](const QByteArray& bytes) {
+            if (isPowered)
+                wired.receive(bytes);
+        });
+        QObject::connect(&wired, &WiredSkin::sent, &terminal, &PseudoTerminal::write);
+        ASSERT_EQ(terminal.open(link), QString());
+    }
 
-    ProtocolSkin device(parseLineAddress(link).value(), {paperHexagon(), triangleTemplate(), rectangleTemplate()});
+    SimulatedRig rig{*findScenario("arm"), 3};
+    WiredSkin wired{rig, {}};
+    QTemporaryDir directory;
+    QString link = QDir(directory.path()).filePath(QStringLiteral("skin"));
+    PseudoTerminal terminal;
+    bool isPowered = true;
+    ProtocolSkin device{parseLineAddress(link).value(), {paperHexagon(), triangleTemplate(), rectangleTemplate()}};
+};
+
+TEST_F(Unplug, AtAnyMomentIsNoticedAndTheSameModulesComeBack) {
     std::map<std::string, ModuleId> first;
     std::set<ModuleId> known;
     bool isReady = false;
@@ -105,20 +116,7 @@ TEST(Unplug, AtAnyMomentIsNoticedAndTheSameModulesComeBack) {
 }
 
 // A board that waits for an upload first, or is plugged in without its power supply.
-TEST(Unplug, WhatIsSilentAtFirstAfterItsReturnIsWaitedFor) {
-    SimulatedRig rig(*findScenario("arm"), 3);
-    WiredSkin wired(rig, {});
-    const QTemporaryDir directory;
-    const QString link = QDir(directory.path()).filePath(QStringLiteral("skin"));
-    PseudoTerminal terminal;
-    bool isPowered = true;
-    QObject::connect(&terminal, &PseudoTerminal::received, &wired, [&](const QByteArray& bytes) {
-        if (isPowered)
-            wired.receive(bytes);
-    });
-    QObject::connect(&wired, &WiredSkin::sent, &terminal, &PseudoTerminal::write);
-    ASSERT_EQ(terminal.open(link), QString());
-    ProtocolSkin device(parseLineAddress(link).value(), {paperHexagon(), triangleTemplate(), rectangleTemplate()});
+TEST_F(Unplug, WhatIsSilentAtFirstAfterItsReturnIsWaitedFor) {
     bool isOpen = false;
     QStringList complaints;
     QObject::connect(&device, &SkinDevice::opened, &device, [&] { isOpen = true; });

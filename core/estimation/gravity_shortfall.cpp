@@ -76,8 +76,8 @@ Shortfall missing(const std::vector<std::size_t>& modules, const BodySolution& s
     name(shortfall, modules, solution);
     const bool all = modules.size() == solution.layout.patchOf.size();
     shortfall.text = fmt::format(
-        "{} gravity readings in two poses or more, which tell how modules are turned: read the accelerometers in six "
-        "poses that tilt the body differently",
+        "{} gravity readings in two poses or more, which tell how modules are turned: read the accelerometers in three "
+        "poses at least, better six, each with another side up",
         all ? "no module has" : listed(shortfall.modules) + (modules.size() == 1 ? " has no" : " have no"));
     return shortfall;
 }
@@ -102,8 +102,9 @@ Shortfall alike(const std::vector<WeakModule>& weak, const BodySolution& solutio
     shortfall.up_r = directionToAdd(weak, basis, solution.weights, options.directions);
     const bool most = 2 * modules.size() > solution.layout.patchOf.size();
     constexpr double kNotAtAll = 40 * kDegree;
-    const std::string known = sigma > kNotAtAll ? "not told at all about one axis"
-                                                : fmt::format("told to {:.1f}° only about one axis", sigma / kDegree);
+    const std::string known = sigma > kNotAtAll
+                                  ? "unknown about one axis"
+                                  : fmt::format("known to {:.1f}° only about their worst axis", sigma / kDegree);
     const std::string such =
         shortfall.up_r ? fmt::format(", such as one in which {}", wordsForUp(*shortfall.up_r, solution)) : "";
     shortfall.text = fmt::format(

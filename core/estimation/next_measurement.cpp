@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -80,6 +81,7 @@ double nearestPose(const BodyState& complete, const Vector3d& up_r) {
     return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
+/// For a person behind the camera: which way to carry it from where it stood, in that picture's directions.
 std::string awayFromViews(const BodySolution& solution, const AdviceBasis& basis, const Vector3d& place) {
     std::optional<std::size_t> nearest;
     const auto distance = [&](std::size_t v) { return (basis.state.T_r_v[v]->translation() - place).norm(); };
@@ -89,8 +91,19 @@ std::string awayFromViews(const BodySolution& solution, const AdviceBasis& basis
     }
     if (!nearest)
         return "";
-    return fmt::format(" ({:.0f} cm from where the camera of {} was)", distance(*nearest) * 100,
-                       solution.measurements->views[*nearest].name);
+    const Vector3d way_cm = 100 * (basis.state.T_r_v[*nearest]->inverse() * place);
+    constexpr std::array<std::array<const char*, 2>, 3> kWays{{{"right", "left"}, {"down", "up"}, {"forward", "back"}}};
+    // What is small beside the rest is lost in the hand.
+    const double least_cm = std::max(1.0, 0.2 * way_cm.norm());
+    std::vector<std::string> ways;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        if (std::abs(way_cm[axis]) >= least_cm)
+            ways.push_back(fmt::format("{:.0f} cm {}", std::abs(way_cm[axis]),
+                                       kWays[static_cast<std::size_t>(axis)][way_cm[axis] < 0 ? 1 : 0]));
+    }
+    const std::string& view = solution.measurements->views[*nearest].name;
+    return ways.empty() ? fmt::format(": where the camera of {} was", view)
+                        : fmt::format(": {} from where the camera of {} was", fmt::join(ways, ", "), view);
 }
 
 struct SeenCandidate {

@@ -36,7 +36,7 @@ struct NextView {
     std::vector<PatchId> patches;     ///< that it looks at
     std::vector<ModuleId> firstSeen;  ///< placed modules that no view looked at so far
     ForecastGain gain;
-    std::string words;  ///< where to put the camera, and how far that is from where it stood before
+    std::string words;  ///< where to put the camera, and which way that is from where it stood before
 };
 
 struct NextMeasurementOptions {

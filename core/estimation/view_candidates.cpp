@@ -132,7 +132,7 @@ struct Maker {
             *std::max_element(target.modules.begin(), target.modules.end(), [&](std::size_t a, std::size_t b) {
                 return basis.state.T_r_u[a]->translation().dot(side) < basis.state.T_r_u[b]->translation().dot(side);
             });
-        return fmt::format("module {}", solution.measurements->skin.modules[edge].id.value);
+        return fmt::format("its edge at module {}", solution.measurements->skin.modules[edge].id.value);
     }
 
     /// From where the picture holds all of it, seen straight.
@@ -160,7 +160,7 @@ struct Maker {
         put(target.normal, "looking straight at it");
         for (const Vector3d& side : {x, Vector3d(-x), y, Vector3d(-y)}) {
             const Vector3d direction = std::cos(options.tilt) * target.normal + std::sin(options.tilt) * side;
-            put(direction, fmt::format("moved {:.0f}° round it towards {}", options.tilt / kDegree,
+            put(direction, fmt::format("then {:.0f}° around it towards {}", options.tilt / kDegree,
                                        nameOfSide(target, own, side)));
         }
     }

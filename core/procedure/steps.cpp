@@ -69,8 +69,10 @@ StepState viewsState(const Progress& p) {
     if (p.views == 0)
         return {StepStatus::Blocked, StepReason::NoViews};
     if (!p.hasBody)
-        return {p.isSolving ? StepStatus::InProgress : StepStatus::NeedsAttention,
-                p.isSolving ? StepReason::Solving : StepReason::PatchesNotPlaced};
+        return {p.isSolving ? StepStatus::InProgress : StepStatus::NeedsAttention, p.isSolving ? StepReason::Solving
+                                                                                   : p.isUnsolved
+                                                                                       ? StepReason::NotSolved
+                                                                                       : StepReason::PatchesNotPlaced};
     if (p.modulesPlaced == 0 || p.patchesPlaced < p.patches)
         return {StepStatus::InProgress, StepReason::PatchesNotPlaced};
     if (p.areViewsFew)
@@ -85,6 +87,8 @@ StepState resultState(const Progress& p) {
     }
     if (p.isSolving)
         return {StepStatus::InProgress, StepReason::Solving};
+    if (p.isUnsolved)
+        return {StepStatus::NeedsAttention, StepReason::NotSolved};
     if (p.modulesPlaced == 0)
         return {StepStatus::Blocked, StepReason::PatchesNotPlaced};
     if (!p.isTrusted)
@@ -99,7 +103,7 @@ StepState exportState(const Progress& p) {
         return {StepStatus::Blocked, StepReason::PatchesNotPlaced};
     if (!p.isExported)
         return {StepStatus::ToDo, StepReason::None};
-    if (!p.isExportNewest)
+    if (!p.isExportNewest || p.isUnsolved)
         return {StepStatus::NeedsAttention, StepReason::Changed};
     return {StepStatus::Done, StepReason::None};
 }

@@ -38,6 +38,7 @@ enum class StepReason {
     PatchesNotPlaced,  ///< further views are asked for
     FewViews,          ///< patches are seen from one side only, or modules not at all
     ModulesNotPlaced,
+    NotSolved,   ///< the newest data give no body
     NotTrusted,  ///< the body's verdict
     Changed,     ///< what was exported is not the newest body
     Solving,     ///< the answer is being computed
@@ -63,7 +64,8 @@ struct Progress {
     bool hasPictures = false;  ///< it runs
     bool isCameraLost = false;
     std::size_t views = 0;
-    bool isSolving = false;  ///< figures below are of an older body, or there is none yet
+    bool isSolving = false;   ///< figures below are of an older body, or there is none yet
+    bool isUnsolved = false;  ///< the newest data give no body: figures below are of an older one, or there is none
     bool hasBody = false;
     std::size_t patches = 0;
     std::size_t patchesPlaced = 0;

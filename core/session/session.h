@@ -25,11 +25,13 @@ class Session : public QObject {
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     [[nodiscard]] QUndoStack& undoStack() { return undoStack_; }
 
-    /// The newest body, not always of the newest data (see isSolving); null before the first, and where no pose counts.
+    /// The newest body, not always of the newest data (see isStale); null before the first, and where no pose counts.
     [[nodiscard]] const std::shared_ptr<const Solution>& solution() const { return solution_; }
     /// What to measure next; null while unknown.
     [[nodiscard]] const std::shared_ptr<const Guidance>& guidance() const { return guidance_; }
     [[nodiscard]] bool isSolving() const { return solver_.isBusy(); }
+    /// There is a body, and it is of older data: the newest are being solved, or give none (see failure).
+    [[nodiscard]] bool isStale() const { return solution_ && (isSolving() || solution_->revision != revision_); }
     /// See Solver::setQuick.
     void setQuick(double seconds) { solver_.setQuick(seconds); }
     /// Why the newest data gave no body; empty where they did.

@@ -82,7 +82,7 @@ LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const CableEvide
     }
     verdict.explanation = verdict.bend ? fmt::format("bend {:.1f}°, twist {:.1f}°: as neighbours have",
                                                      *verdict.bend / kDegree, *verdict.twist / kDegree)
-                                       : "nothing speaks against it";
+                                       : "nothing measured contradicts neighbours";
     return verdict;
 }
 

@@ -52,6 +52,7 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
     auto* side = new QVBoxLayout;
     rest_->setRange(0, 100);
     rest_->setAccessibleName(tr("Stillness"));
+    rest_->setFormat(tr("Held still: %p %"));
     rest_->setToolTip(tr("Fills while the body rests; then its pose is captured"));
     side->addWidget(rest_);
     side->addWidget(movement_);

@@ -139,10 +139,10 @@ std::vector<std::pair<QString, QString>> ResultPage::figuresOf(const Solution& s
         if (value)
             rows.emplace_back(name, tr("%1 %2").arg(factor * *value, 0, 'f', digits).arg(unit));
     };
-    add(tr("Spots from where the body has them (rms)"), quality.residual_rms_px, 1, tr("px"), 3);
+    add(tr("Reprojection error (rms)"), quality.residual_rms_px, 1, tr("px"), 3);
     add(tr("Ports of neighbours apart (rms)"), quality.link_mismatch_rms, 1e3, tr("mm"), 2);
     add(tr("Ports of neighbours apart (widest)"), quality.link_mismatch_max, 1e3, tr("mm"), 2);
-    add(tr("Gravity (rms)"), quality.gravity_residual_rms, 1, tr("m/s²"), 3);
+    add(tr("Gravity residual (rms)"), quality.gravity_residual_rms, 1, tr("m/s²"), 3);
     rows.emplace_back(tr("Solved in"), tr("%1 s").arg(solution.seconds, 0, 'f', 2));
     return rows;
 }
@@ -164,14 +164,16 @@ void ResultPage::refresh() {
                           : quality.trust == Trust::Usable       ? theme.attention
                                                                  : theme.good;
     verdict_->setStyleSheet(QStringLiteral("color: %1").arg((isPlaced ? colour : theme.text).name()));
-    const bool isStale = workbench_.session().isSolving();
+    const Session& session = workbench_.session();
+    const bool isStale = session.isStale();
     figures_->setEnabled(!isStale);
     reasons_->setEnabled(!isStale);
-    reason_->setText(isStale ? tr("Stale: of before the last change. The newest data are being solved …")
-                     : isPlaced
-                         ? tr("All figures are of the newest data. Colours and ellipsoids of the 3D view are chosen "
-                              "above it.")
-                         : tr("Scan a view to place them."));
+    reason_->setText(
+        isStale && session.isSolving() ? tr("Stale: of before the last change. The newest data are being solved …")
+        : isStale  ? tr("Stale: of before the last change. The newest data give no body: %1").arg(session.failure())
+        : isPlaced ? tr("All figures are of the newest data. Colours and ellipsoids of the 3D view are chosen "
+                        "above it.")
+                   : tr("Scan a view to place them."));
     for (const auto& [name, figure] : figuresOf(*solution)) {
         const int row = figures_->rowCount();
         figures_->insertRow(row);

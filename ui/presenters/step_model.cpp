@@ -57,6 +57,8 @@ QString sentenceOf(StepReason reason) {
             return StepModel::tr("look from further sides");
         case StepReason::ModulesNotPlaced:
             return StepModel::tr("some modules are not placed");
+        case StepReason::NotSolved:
+            return StepModel::tr("the newest data can't be solved");
         case StepReason::NotTrusted:
             return StepModel::tr("not to be trusted yet");
         case StepReason::Changed:
@@ -135,6 +137,7 @@ Progress StepModel::progress() const {
     p.isCameraLost = isCameraLost_;
     p.views = session.measured().views.size() - session.decisions().droppedViews.size();
     p.isSolving = session.isSolving();
+    p.isUnsolved = !session.isSolving() && !session.failure().isEmpty();
     if (const auto& solution = session.solution()) {
         p.hasBody = solution->solved.anyViewPlaced();
         p.patches = solution->body.patches.size();
@@ -149,7 +152,7 @@ Progress StepModel::progress() const {
         p.areViewsFew = needsViews(*solution);
         // Undone, a decision leaves the body as it was exported.
         p.isExportNewest =
-            exported_ && !session.isSolving() && (exported_ == solution || isSameBody(exported_->body, solution->body));
+            exported_ && !session.isStale() && (exported_ == solution || isSameBody(exported_->body, solution->body));
     }
     p.isExported = exported_ != nullptr;
     return p;

@@ -65,7 +65,7 @@ std::optional<Isometry3d> ViewsPresenter::target() const {
 
 bool ViewsPresenter::isEnough() const {
     Session& session = workbench_.session();
-    return session.solution() && !session.isSolving() && !needsViews(*session.solution()) && !patches_.empty() &&
+    return session.solution() && !session.isStale() && !needsViews(*session.solution()) && !patches_.empty() &&
            std::all_of(patches_.begin(), patches_.end(), [](const PatchState& patch) { return patch.isPlaced; });
 }
 

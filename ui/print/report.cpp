@@ -66,10 +66,10 @@ QString figures(const BodyQuality& quality) {
         if (value)
             rows += row({name, QStringLiteral("%1 %2").arg(factor * *value, 0, 'g', 3).arg(unit)});
     };
-    add(tr("Spots from where the body has them, rms"), quality.residual_rms_px, 1, tr("px"));
+    add(tr("Reprojection error, rms"), quality.residual_rms_px, 1, tr("px"));
     add(tr("Ports of neighbours apart, rms"), quality.link_mismatch_rms, 1e3, tr("mm"));
     add(tr("Ports of neighbours apart, widest"), quality.link_mismatch_max, 1e3, tr("mm"));
-    add(tr("Gravity, rms"), quality.gravity_residual_rms, 1, tr("m/s²"));
+    add(tr("Gravity residual, rms"), quality.gravity_residual_rms, 1, tr("m/s²"));
     return table({}, rows);
 }
 

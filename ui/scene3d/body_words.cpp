@@ -152,8 +152,9 @@ QString BodyWords::empty() {
 QString BodyWords::caption(const SceneLayout& layout) {
     if (layout.apart.empty())
         return {};
-    return layout.anyPlaced ? tr("Patches without a place yet are shown below the body.")
-                            : tr("The patches take shape. Pictures will show how they sit on the body.");
+    return layout.anyPlaced
+               ? tr("Faded patches below the body are not placed yet: further views will show where they sit.")
+               : tr("The patches take shape. Pictures will show how they sit on the body.");
 }
 
 QString BodyWords::description(const BodyModel* body, const SceneLayout& layout) {

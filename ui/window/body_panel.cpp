@@ -37,7 +37,7 @@ BodyPanel::BodyPanel(QWidget* parent)
     bar->addWidget(colours_);
     bar->addWidget(ellipsoids);
     bar->addStretch();
-    stale_->setToolTip(tr("The body is of before the last change; the newest data are being solved"));
+    stale_->setToolTip(tr("The body is of before the last change; the newest data are being solved, or give no body"));
     stale_->setProperty("attention", true);
     stale_->hide();
     bar->addWidget(stale_);

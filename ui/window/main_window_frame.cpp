@@ -138,8 +138,9 @@ void MainWindow::buildFrame() {
     auto* panel = new BodyPanel;
     body_ = &panel->view();
     colours_ = &panel->colours();
-    connect(&workbench_.session(), &Session::solvingChanged, panel,
-            [this, panel](bool solving) { panel->setStale(solving && workbench_.session().solution() != nullptr); });
+    const auto tellStale = [this, panel] { panel->setStale(workbench_.session().isStale()); };
+    connect(&workbench_.session(), &Session::solvingChanged, panel, tellStale);
+    connect(&workbench_.session(), &Session::solutionChanged, panel, tellStale);
     connect(body_, &BodyViewWidget::moduleClicked, this, [this](ModuleId module) {
         showModules({module});
         connection_.blink(module);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <map>
+#include <regex>
 
 #include "core/estimation/advice_basis.h"
 #include "core/geometry/random.h"
@@ -156,6 +158,30 @@ TEST(NextView, BoardsOfTheBodyHideWhatIsBehind) {
         for (std::size_t u = 0; u < pixels.size(); ++u)
             wrong += pixels[u].has_value() != visiblePixel(world, 0, u).has_value() ? 1 : 0;
         EXPECT_LE(wrong, 3U) << view.words;
+    }
+}
+
+TEST(NextView, WordsLeadThereFromWhereTheCameraStood) {
+    const std::map<std::string, Vector3d> ways{{"right", Vector3d::UnitX()},   {"left", -Vector3d::UnitX()},
+                                               {"down", Vector3d::UnitY()},    {"up", -Vector3d::UnitY()},
+                                               {"forward", Vector3d::UnitZ()}, {"back", -Vector3d::UnitZ()}};
+    for (const std::string scenario : {"plane", "cylinder"}) {
+        const SolvedWorld solved(scenarioWorld(scenario, 1));
+        const AdviceBasis basis = adviceBasis(solved.solution);
+        const auto ranked = rankNextViews(solved.solution);
+        ASSERT_TRUE(ranked && !ranked->empty());
+        for (const NextView& view : *ranked) {
+            const std::string way = view.words.substr(view.words.find(": "));
+            std::size_t from = 0;
+            while (!way.ends_with(solved.solution.measurements->views[from].name + " was"))
+                ASSERT_LT(++from, basis.state.T_r_v.size()) << view.words;
+            Vector3d said_cm = Vector3d::Zero();
+            static const std::regex kPart("([0-9]+) cm ([a-z]+)");
+            for (std::sregex_iterator part(way.begin(), way.end(), kPart), end; part != end; ++part)
+                said_cm += std::stod((*part)[1]) * ways.at((*part)[2]);
+            const Vector3d is_cm = 100 * (basis.state.T_r_v[from]->inverse() * view.T_r_v.translation());
+            EXPECT_LT((said_cm - is_cm).norm(), 2 + 0.3 * is_cm.norm()) << view.words;
+        }
     }
 }
 

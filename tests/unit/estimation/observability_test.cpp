@@ -87,7 +87,7 @@ TEST(FindShortfalls, PosesThatAreTurnsAboutGravity) {
     const auto shortfalls = findShortfalls(solved.solution);
     const Shortfall* alike = find(shortfalls, Kind::PosesAlike);
     ASSERT_NE(alike, nullptr) << texts(shortfalls);
-    EXPECT_THAT(alike->text, HasSubstr("not told at all"));
+    EXPECT_THAT(alike->text, HasSubstr("unknown about one axis"));
     EXPECT_THAT(alike->text, HasSubstr("6 poses, tilted by at most"));
     EXPECT_GT(alike->figure.value(), 40);
 }

@@ -119,6 +119,10 @@ TEST(Steps, HaveTheStatesOfTheTable) {
          [](Progress& p) { p.hasBody = false, p.isSolving = true; },
          {InProgress, Reason::Solving}},
         {"unsolved", Step::Views, [](Progress& p) { p.hasBody = false; }, {NeedsAttention, Reason::PatchesNotPlaced}},
+        {"not solved",
+         Step::Views,
+         [](Progress& p) { p.hasBody = false, p.isUnsolved = true; },
+         {NeedsAttention, Reason::NotSolved}},
         {"some placed", Step::Views, [](Progress& p) { p.patchesPlaced = 2; }, {InProgress, Reason::PatchesNotPlaced}},
         {"no module", Step::Views, [](Progress& p) { p.modulesPlaced = 0; }, {InProgress, Reason::PatchesNotPlaced}},
 
@@ -130,6 +134,7 @@ TEST(Steps, HaveTheStatesOfTheTable) {
          {Blocked, Reason::Solving}},
         {"unsolved", Step::Result, [](Progress& p) { p.hasBody = false; }, {Blocked, Reason::PatchesNotPlaced}},
         {"again", Step::Result, [](Progress& p) { p.isSolving = true; }, {InProgress, Reason::Solving}},
+        {"not solved", Step::Result, [](Progress& p) { p.isUnsolved = true; }, {NeedsAttention, Reason::NotSolved}},
         {"none placed", Step::Result, [](Progress& p) { p.modulesPlaced = 0; }, {Blocked, Reason::PatchesNotPlaced}},
         {"doubtful", Step::Result, [](Progress& p) { p.isTrusted = false; }, {NeedsAttention, Reason::NotTrusted}},
         {"some placed",
@@ -142,6 +147,7 @@ TEST(Steps, HaveTheStatesOfTheTable) {
         {"none placed", Step::Export, [](Progress& p) { p.modulesPlaced = 0; }, {Blocked, Reason::PatchesNotPlaced}},
         {"not yet", Step::Export, [](Progress& p) { p.isExported = false; }, {ToDo, Reason::None}},
         {"changed", Step::Export, [](Progress& p) { p.isExportNewest = false; }, {NeedsAttention, Reason::Changed}},
+        {"not solved", Step::Export, [](Progress& p) { p.isUnsolved = true; }, {NeedsAttention, Reason::Changed}},
 
         {"complete", Step::Demo, [](Progress&) {}, {ToDo, Reason::None}},
         {"empty", Step::Demo, [](Progress&) {}, {Blocked, Reason::PatchesNotPlaced}, empty},
@@ -209,6 +215,7 @@ Progress randomProgress(Random& random) {
     p.isCameraLost = random.uniform() < 0.2;
     p.views = random.index(3);
     p.isSolving = coin();
+    p.isUnsolved = !p.isSolving && coin();
     p.hasBody = coin();
     p.patches = random.index(3);
     p.patchesPlaced = random.index(p.patches + 1);
@@ -234,9 +241,10 @@ TEST(Steps, AreNotDoneWhileWhatTheyNeedIsMissing) {
         EXPECT_TRUE(!isDone(Step::Scan) || (p.hasSkin && p.hasIntrinsics && p.views > 0));
         EXPECT_TRUE(!isDone(Step::Views) ||
                     (p.views > 0 && p.hasBody && p.modulesPlaced > 0 && p.patchesPlaced == p.patches));
-        EXPECT_TRUE(!isDone(Step::Result) ||
-                    (p.hasBody && !p.isSolving && p.isTrusted && p.modules > 0 && p.modulesPlaced == p.modules));
-        EXPECT_TRUE(!isDone(Step::Export) || (p.hasBody && p.modulesPlaced > 0 && p.isExported && p.isExportNewest));
+        EXPECT_TRUE(!isDone(Step::Result) || (p.hasBody && !p.isSolving && !p.isUnsolved && p.isTrusted &&
+                                              p.modules > 0 && p.modulesPlaced == p.modules));
+        EXPECT_TRUE(!isDone(Step::Export) ||
+                    (p.hasBody && !p.isUnsolved && p.modulesPlaced > 0 && p.isExported && p.isExportNewest));
         EXPECT_FALSE(isDone(Step::Demo)) << "it can always be played with again";
         // What can be begun has what it needs, the devices included.
         const auto isOpen = [&](Step step) { return stateOf(states, step).status != Blocked && !isDone(step); };

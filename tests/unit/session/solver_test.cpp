@@ -173,5 +173,25 @@ TEST(Solver, SaysWhyThereIsNoBody) {
     ASSERT_TRUE(waitFor([&] { return !session.isSolving(); }));
 }
 
+TEST(Solver, ABodyIsStaleWhileNewerDataGiveNone) {
+    Session session;
+    session.load(smallRecording(1));
+    ASSERT_TRUE(waitFor([&] { return isSolved(session) && !session.isSolving(); }));
+    EXPECT_FALSE(session.isStale());
+    const auto body = session.solution();
+    std::vector<GravityReading> broken = session.measured().gravity;
+    for (GravityReading& reading : broken)
+        reading.acceleration = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    const int pose = session.addPose(broken);
+    EXPECT_TRUE(session.isStale()) << "nothing has been computed yet";
+    ASSERT_TRUE(waitFor([&] { return !session.failure().isEmpty(); }));
+    ASSERT_TRUE(waitFor([&] { return !session.isSolving(); }));
+    EXPECT_TRUE(session.isStale()) << "though nothing is being computed";
+    EXPECT_EQ(session.solution(), body);
+    session.decide("drop", [&](Decisions& decisions) { decisions.droppedPoses.insert(pose); });
+    ASSERT_TRUE(waitFor([&] { return !session.isStale(); }));
+    EXPECT_TRUE(session.failure().isEmpty());
+}
+
 }  // namespace
 }  // namespace skincal

@@ -75,7 +75,7 @@ TEST(DetectCables, NothingSpeaksAgainstALinkWithoutEvidence) {
     EXPECT_EQ(verdict.kind, LinkKind::Adjacent);
     EXPECT_EQ(verdict.reason, LinkReason::Neighbours);
     EXPECT_FALSE(verdict.bend || verdict.twist);
-    EXPECT_EQ(verdict.explanation, "nothing speaks against it");
+    EXPECT_EQ(verdict.explanation, "nothing measured contradicts neighbours");
 }
 
 TEST(DetectCables, NeighboursMayBendAndTwistALittle) {

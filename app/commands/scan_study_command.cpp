@@ -100,8 +100,8 @@ void addScanStudyCommand(CommandLine& line) {
     command->add_option("--disturbance", arguments->disturbances, "Only these")->check(CLI::IsMember(known));
     command->add_option("--modules", arguments->modules, "Only skins of so many modules: 7, 55, 200, 1000, 10000");
     command->add_option("--scan", arguments->methods, "Only these")
-        ->check(CLI::IsMember({std::string(name(ScanMethod::Coded)), std::string(name(ScanMethod::OneAtATime)),
-                               std::string(name(ScanMethod::PaperSingle))}));
+        ->check(CLI::IsMember({std::string(name(ScanMethod::Coded)), std::string(name(ScanMethod::CodedOnce)),
+                               std::string(name(ScanMethod::OneAtATime)), std::string(name(ScanMethod::PaperSingle))}));
     command->add_option("--plot", arguments->plot, "Write what is found against strength as a picture (SVG)");
     command->add_flag("--json", arguments->json, "Print as JSON (metres, pixels, seconds of decoding)");
     command->callback([&line, arguments] { line.run = [arguments] { return runScan(*arguments); }; });

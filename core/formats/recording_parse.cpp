@@ -127,6 +127,9 @@ FrameInfo readFrame(const JsonCursor& cursor, const ModuleIndex& index) {
     }
     if (cursor.holds("t"))
         frame.time_s = cursor.at("t").number();
+    // A key of ours, which the page does not name: others read past it.
+    if (cursor.holds("look"))
+        frame.look = static_cast<std::size_t>(cursor.at("look").integer(0, kMaxLooks));
     return frame;
 }
 
@@ -146,8 +149,12 @@ void readViews(const JsonCursor& root, Recording& recording, const ModuleIndex& 
         if (!names.insert(view.name).second)
             item.at("name").fail(fmt::format("expected a name of its own, '{}' is taken", view.name));
         if (item.holds("frames")) {
-            for (const JsonCursor& frame : item.at("frames").array(kMaxFramesPerView))
+            for (const JsonCursor& frame : item.at("frames").array(kMaxFramesPerView)) {
+                const std::size_t before = view.frames.empty() ? 0 : view.frames.back().look;
                 view.frames.push_back(readFrame(frame, index));
+                if (view.frames.back().look < before)
+                    frame.at("look").fail(fmt::format("expected {} or more, as in the frame before", before));
+            }
         }
         recording.views.push_back(std::move(view));
     }

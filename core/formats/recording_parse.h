@@ -13,6 +13,7 @@ namespace skincal {
 
 /// Above these a recording is refused: no skin is that large, a damaged file easily is.
 inline constexpr std::size_t kMaxModules = 1'000'000;
+inline constexpr int kMaxLooks = 1000;  // of a view
 inline constexpr std::size_t kMaxLinks = 4'000'000;
 inline constexpr std::size_t kMaxTemplates = 1'000;
 inline constexpr std::size_t kMaxPorts = 64;

@@ -7,6 +7,7 @@
 
 #include "core/formats/files.h"
 #include "core/formats/recording.h"
+#include "core/formats/recording_bytes.h"
 #include "core/formats/template_json.h"
 
 namespace skincal {
@@ -31,6 +32,8 @@ Json frameToJson(const FrameInfo& frame) {
     }
     if (frame.time_s)
         json["t"] = *frame.time_s;
+    if (frame.look > 0)
+        json["look"] = frame.look;
     return json;
 }
 
@@ -87,14 +90,7 @@ std::string gravityToCsv(const std::vector<GravityReading>& gravity) {
 
 }  // namespace
 
-tl::expected<void, FileError> writeRecording(const Recording& recording, const fs::path& directory, bool overwrite) {
-    std::error_code error;
-    if (!overwrite && fs::exists(directory / "recording.json", error))
-        return tl::unexpected(FileError{directory, "", "there is a recording already"});
-    fs::create_directories(directory, error);
-    if (error)
-        return tl::unexpected(FileError{directory, "", "can't make the directory: " + error.message()});
-
+RecordingTexts textsOf(const Recording& recording) {
     Json json = skinToJson(recording);
     json["gravity"] = "gravity.csv";
     if (recording.camera.width > 0) {
@@ -131,26 +127,43 @@ tl::expected<void, FileError> writeRecording(const Recording& recording, const f
     }
 
     addKeys(json, recording.unknown);
+    RecordingTexts texts{{"gravity.csv", gravityToCsv(recording.gravity)}};
+    if (anyDetection)
+        texts.emplace_back("detections.csv", std::move(detections));
+    texts.emplace_back("recording.json", json.dump(1) + "\n");
+    return texts;
+}
 
-    // recording.json last: a directory without it is no recording, so a half-written one is never read.
-    if (auto result = writeFileAtomically(directory / "gravity.csv", gravityToCsv(recording.gravity)); !result)
-        return result;
-    if (anyDetection) {
-        if (auto result = writeFileAtomically(directory / "detections.csv", detections); !result)
+std::string pngOf(const cv::Mat& picture) {
+    std::vector<unsigned char> bytes;
+    // Level 1: noise does not compress, and writing is what a simulated scan spends its time on.
+    if (!cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+        return {};
+    return {bytes.begin(), bytes.end()};
+}
+
+tl::expected<void, FileError> writeRecording(const Recording& recording, const fs::path& directory, bool overwrite) {
+    std::error_code error;
+    if (!overwrite && fs::exists(directory / "recording.json", error))
+        return tl::unexpected(FileError{directory, "", "there is a recording already"});
+    fs::create_directories(directory, error);
+    if (error)
+        return tl::unexpected(FileError{directory, "", "can't make the directory: " + error.message()});
+    for (const auto& [file, text] : textsOf(recording)) {
+        if (auto result = writeFileAtomically(directory / file, text); !result)
             return result;
     }
-    return writeFileAtomically(directory / "recording.json", json.dump(1) + "\n");
+    return {};
 }
 
 tl::expected<void, FileError> writeFrame(const fs::path& directory, const std::string& file, const cv::Mat& picture) {
     const fs::path path = directory / file;
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
-    std::vector<unsigned char> bytes;
-    // Level 1: noise does not compress, and writing is what a simulated scan spends its time on.
-    if (error || !cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+    const std::string bytes = error ? std::string() : pngOf(picture);
+    if (bytes.empty())
         return tl::unexpected(FileError{path, "", "can't write the picture"});
-    return writeFileAtomically(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    return writeFileAtomically(path, bytes);
 }
 
 }  // namespace skincal

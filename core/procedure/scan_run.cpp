@@ -258,6 +258,18 @@ struct Stepper {
         begin(result);
         return result;
     }
+    Result operator()(const Extend& more) const {
+        if (!in(Phase::Decoding) || more.frames == 0)
+            return {state};
+        Result result{state};
+        ScanRun& next = result.state;
+        next.left.resize(more.frames);
+        std::iota(next.left.begin(), next.left.end(), next.frames);
+        next.frames += more.frames;
+        next.repeats = 0;
+        begin(result);
+        return result;
+    }
     /// Or goes on after a break: by the next picture it is known what time it is.
     void begin(Result& result) const {
         result.state.newest.reset();

@@ -131,6 +131,10 @@ struct PictureTaken {
     Time now{};         ///< when it came
     double change = 0;  ///< lightChange() since the reference; in Phase::Timing
 };
+/// In Phase::Decoding: what there is does not do, and so many more are to be taken. Those that were stay.
+struct Extend {
+    std::size_t frames = 0;
+};
 struct Pause {};
 struct Resume {};
 struct Cancel {};   ///< in Done and Failed: it has been seen
@@ -140,8 +144,8 @@ struct Failed {
 };
 struct TimedOut {};
 
-using Event =
-    std::variant<Start, LightCommanded, LightShown, PictureTaken, Pause, Resume, Cancel, Decoded, Failed, TimedOut>;
+using Event = std::variant<Start, Extend, LightCommanded, LightShown, PictureTaken, Pause, Resume, Cancel, Decoded,
+                           Failed, TimedOut>;
 
 struct Light {
     std::size_t frame = 0;

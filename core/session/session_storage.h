@@ -21,4 +21,15 @@ namespace skincal {
 [[nodiscard]] tl::expected<void, std::string> writeSession(const Measured& measured, const Decisions& decisions,
                                                            const std::filesystem::path& directory);
 
+/// SHA-256 of a view's pictures as they are written: what was once computed stays.
+using PictureDigests = std::map<std::shared_ptr<const Pictures>, std::vector<std::string>>;
+
+/// SHA-256 of each file that writeSession would write where there is nothing yet, by its name in the recording, so that
+/// a result can be told from the very data that it follows from. Pictures are encoded for it: 20 ms each, once.
+/// Nothing where cancelled, or where Decisions::camera is missing.
+[[nodiscard]] std::optional<std::map<std::string, std::string>> digestSession(const Measured& measured,
+                                                                              const Decisions& decisions,
+                                                                              PictureDigests& known,
+                                                                              const RunContext& context = {});
+
 }  // namespace skincal

@@ -11,6 +11,7 @@
 #include "core/simulation/renderer.h"
 #include "core/study/centre_bound.h"
 #include "core/vision/decoder.h"
+#include "core/vision/further_looks.h"
 #include "core/vision/paper_detector.h"
 
 namespace skincal {
@@ -181,6 +182,8 @@ std::string_view name(ScanMethod method) {
     switch (method) {
         case ScanMethod::Coded:
             return "coded";
+        case ScanMethod::CodedOnce:
+            return "coded once";
         case ScanMethod::OneAtATime:
             return "one at a time";
         case ScanMethod::PaperSingle:
@@ -279,8 +282,9 @@ ScanScore scoreScan(const ScanCase& what, std::uint64_t seed, const RunContext& 
 }
 
 ScanScore scoreScan(World world, const ScanCase& what, const RunContext& context) {
-    world.scenario.views.scan = what.method == ScanMethod::Coded ? ScanKind::Coded : ScanKind::OneAtATime;
-    const std::vector<FrameInfo> frames = planScan(world, kView);
+    const bool isCoded = what.method == ScanMethod::Coded || what.method == ScanMethod::CodedOnce;
+    world.scenario.views.scan = isCoded ? ScanKind::Coded : ScanKind::OneAtATime;
+    std::vector<FrameInfo> frames = planScan(world, kView);
     const FrameRenderer renderer(world, kView, frames.size());
     std::vector<ModuleId> modules;
     for (const SkinModule& module : world.skin.modules)
@@ -300,15 +304,31 @@ ScanScore scoreScan(World world, const ScanCase& what, const RunContext& context
         painting += std::chrono::duration<double>(Clock::now() - start).count();
         return picture;
     };
-    const auto start = Clock::now();
-    const auto view = what.method == ScanMethod::PaperSingle ? detectPaper("view", modules, frames, load, {}, context)
-                                                             : decodeView("view", modules, frames, load, {}, context);
     ScanScore result;
-    if (!view && !view.error().cancelled)
-        throw std::logic_error("a scan of the study can't be decoded: " + view.error().message);
+    const auto decode = [&] {
+        painting = 0;
+        const auto start = Clock::now();
+        auto view = what.method == ScanMethod::PaperSingle ? detectPaper("view", modules, frames, load, {}, context)
+                                                           : decodeView("view", modules, frames, load, {}, context);
+        if (!view && !view.error().cancelled)
+            throw std::logic_error("a scan of the study can't be decoded: " + view.error().message);
+        result.seconds = std::chrono::duration<double>(Clock::now() - start).count() - painting;
+        return view;
+    };
+    auto view = decode();
+    FurtherLooks further(kView);
+    while (view && what.method == ScanMethod::Coded) {
+        const auto look = further.next(*view);
+        if (!look)
+            break;
+        for (const auto& lit : *look)
+            frames.push_back({{}, lit, {}, further.looks()});
+        if (!pictures.empty())
+            pictures.resize(frames.size());
+        view = decode();
+    }
     if (!view)
-        return result;
-    result.seconds = std::chrono::duration<double>(Clock::now() - start).count() - painting;
+        return {};
     result.views = 1;
     result.frames = frames.size();
     std::vector<std::optional<double>> bounds;

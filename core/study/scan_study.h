@@ -32,7 +32,8 @@ enum class Disturbance {
 [[nodiscard]] const std::vector<double>& strengthsOf(Disturbance disturbance);
 
 enum class ScanMethod {
-    Coded,        ///< codedScan and decodeView
+    Coded,        ///< codedScan and decodeView, and FurtherLooks for what they leave undecided
+    CodedOnce,    ///< a single look
     OneAtATime,   ///< the paper's scan, with decodeView
     PaperSingle,  ///< the paper's scan and its detector
 };
@@ -59,7 +60,7 @@ struct ScanScore {
     std::size_t sharp = 0;     ///< of the found, those that are not clipped and that centreBounds has a bound of
     double squaredBounds = 0;  ///< of these, squared error over the squared bound, sum over both axes
     double sharpSigmas = 0;    ///< of these, the part of squaredSigmas
-    double seconds = 0;        ///< that decoding took
+    double seconds = 0;        ///< that decoding took after the last picture
 
     static constexpr double kElsewhere_px = 3;
     [[nodiscard]] double foundShare() const;

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "core/vision/frame_pass.h"
+#include "core/vision/looks.h"
 #include "core/vision/parallel.h"
 #include "core/vision/scan_motion.h"
 #include "core/vision/sightings.h"
@@ -30,15 +31,19 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
         const auto spots = std::equal_range(sightings.begin(), sightings.end(), Sighting{u, {}},
                                             [](const Sighting& a, const Sighting& b) { return a.module < b.module; });
         if (!scan.codebook.blinks(u)) {
-            verdicts.note(u, DetectionVerdict::NotFound,
+            verdicts.note(u, DetectionVerdict::NotFound, Undetected::Cause::NeverBlinked,
                           scan.codebook.lit[u].empty() ? "its LED was never lit"
                                                        : "its LED was never dark, or only like a drift");
         } else if (sharing[scan.codebook.representative[u]] > 1) {
-            verdicts.note(u, DetectionVerdict::Ambiguous,
+            verdicts.note(u, DetectionVerdict::Ambiguous, Undetected::Cause::Alike,
                           fmt::format("lit in the same frames as {} other modules",
                                       sharing[scan.codebook.representative[u]] - 1));
         } else if (spots.first != spots.second && spoilt) {
-            verdicts.replace(u, {{}, DetectionVerdict::NotFound, "the camera moved while its word was shown"});
+            verdicts.replace(u, {{},
+                                 DetectionVerdict::NotFound,
+                                 "the camera moved while its word was shown",
+                                 {},
+                                 Undetected::Cause::CameraMoved});
         } else if (spots.first != spots.second) {
             const std::vector<Sighting> distinct = distinctSpots({spots.first, spots.second}, options);
             if (distinct.size() == 1) {
@@ -51,30 +56,19 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
         }
         result.undetected.push_back(verdicts.take(u, modules[u]));
     }
+    using Cause = Undetected::Cause;
+    result.unexplained =
+        verdicts.unexplained() +
+        static_cast<std::size_t>(
+            std::count_if(result.undetected.begin(), result.undetected.end(), [](const Undetected& one) {
+                return one.cause == Cause::Alike || one.cause == Cause::NotAnLed || one.cause == Cause::TooBright;
+            }));
     return result;
 }
 
-}  // namespace
-
-bool DecoderOptions::validate() const {
-    return candidates.validate() && words.validate() && fit.validate() && windowRadius >= 3 && windowRadius <= 30 &&
-           maxShift_px > 0 && sameSpot_px > 0 && maxStrayShare > 0 && reflectionRatio >= 1 && maxMotion_px > 0 &&
-           candidatesPerModule >= 1 && extraCandidates >= 0 && maxSpots >= 2;
-}
-
-cv::Mat toGrey(const cv::Mat& frame) {
-    if (frame.channels() == 1)
-        return frame;
-    cv::Mat grey;
-    cv::cvtColor(frame, grey, frame.channels() == 4 ? cv::COLOR_BGRA2GRAY : cv::COLOR_BGR2GRAY);
-    return grey;
-}
-
-tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<const ModuleId> modules,
-                                                   std::span<const FrameInfo> frames, const FrameLoader& load,
-                                                   const DecoderOptions& options, const RunContext& context) {
-    if (!options.validate())
-        throw std::logic_error("DecoderOptions out of range");
+tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> modules, std::span<const FrameInfo> frames,
+                                                   const FrameLoader& load, const DecoderOptions& options,
+                                                   const RunContext& context) {
     const auto words = litWords(modules, frames);
     if (!words)
         return tl::unexpected(ScanError{words.error(), false});
@@ -162,9 +156,52 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
     if (!moved_px || *moved_px > 0)
         moved_px = std::max(moved_px, knocked_px(sightings, matches));
     ViewDetections result = decide(modules, scan, matches, sightings, moved_px, options, verdicts);
-    result.name = std::move(name);
     context.report("measuring spots", 1);
     return result;
+}
+
+/// Some pictures of a view.
+FrameLoader from(std::size_t first, const FrameLoader& load) {
+    return [first, &load](std::size_t k) { return load(first + k); };
+}
+
+}  // namespace
+
+bool DecoderOptions::validate() const {
+    return candidates.validate() && words.validate() && fit.validate() && windowRadius >= 3 && windowRadius <= 30 &&
+           maxShift_px > 0 && sameSpot_px > 0 && maxStrayShare > 0 && reflectionRatio >= 1 && maxMotion_px > 0 &&
+           candidatesPerModule >= 1 && extraCandidates >= 0 && maxSpots >= 2;
+}
+
+cv::Mat toGrey(const cv::Mat& frame) {
+    if (frame.channels() == 1)
+        return frame;
+    cv::Mat grey;
+    cv::cvtColor(frame, grey, frame.channels() == 4 ? cv::COLOR_BGRA2GRAY : cv::COLOR_BGR2GRAY);
+    return grey;
+}
+
+tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<const ModuleId> modules,
+                                                   std::span<const FrameInfo> frames, const FrameLoader& load,
+                                                   const DecoderOptions& options, const RunContext& context) {
+    if (!options.validate())
+        throw std::logic_error("DecoderOptions out of range");
+    const std::vector<std::size_t> beginnings = beginningsOfLooks(frames);
+    const std::size_t end = beginnings.size() > 1 ? beginnings[1] : frames.size();
+    auto view = decodeLook(modules, frames.first(end), load, options, context);
+    if (!view)
+        return view;
+    view->name = std::move(name);
+    for (std::size_t i = 1; i < beginnings.size(); ++i) {
+        const std::size_t last = i + 1 < beginnings.size() ? beginnings[i + 1] : frames.size();
+        const auto look = frames.subspan(beginnings[i], last - beginnings[i]);
+        const auto further = decodeLook(modulesLitIn(look), look, from(beginnings[i], load), options, context);
+        if (!further)
+            return further;
+        addLook(*view, *further, {options.maxMotion_px, options.sameSpot_px});
+    }
+    sortAs(modules, *view);
+    return view;
 }
 
 }  // namespace skincal

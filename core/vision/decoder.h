@@ -37,6 +37,9 @@ struct DecoderOptions {
 /// amplitude of the module's word, neighbours' light taken off, fitSpot). Memory grows with candidates times frames,
 /// never pictures times frames.
 ///
+/// Where modules were looked for again (FurtherLooks), each look is decoded by itself and adds to those before it
+/// (addLook).
+///
 /// Every module is either in `found` or in `undetected` with the reason:
 ///   NotFound   never or always lit; no spot blinks its word; its spot has not the shape of an LED; the camera moved by
 ///              more than `maxMotion_px` in the scan

@@ -23,6 +23,7 @@ struct FrameInfo {
     std::string file;
     std::vector<LitModule> lit;
     std::optional<double> time_s{};
+    std::size_t look = 0;  ///< which scan of the view it belongs to, rising: see FurtherLooks
 };
 
 /// Loads frame k of a view as 8-bit BGR or grey; the decoder asks for frames in order and may ask for one twice, so

@@ -3,6 +3,7 @@
 #include <QDateTime>
 #include <QLocale>
 #include <QtConcurrent/QtConcurrentRun>
+#include <algorithm>
 
 #include "core/formats/body_json.h"
 #include "core/formats/export_csv.h"
@@ -10,9 +11,12 @@
 #include "core/formats/export_urdf.h"
 #include "core/formats/files.h"
 #include "ui/presenters/lens_words.h"
+#include "ui/presenters/report_facts.h"
 
 namespace skincal {
 namespace {
+
+constexpr std::size_t kMostCrops = 400;
 
 QString now() {
     return QLocale().toString(QDateTime::currentDateTime(), QLocale::LongFormat);
@@ -48,27 +52,23 @@ ExportPresenter::ExportPresenter(Workbench& workbench, QObject* parent) : QObjec
         {tr("Body model"), QStringLiteral(".body.json"),
          tr("Everything: poses with covariances, verdicts on links and detections, quality. Metres, unit quaternions "
             "(x y z w), in the body frame, which is the first placed camera's."),
-         [](const Solution& solution, const ReportFacts&) { return bodyToJson(solution.body); }},
+         [](const BodyModel& body, const ReportFacts&) { return bodyToJson(body); }, false, true},
         {tr("URDF"), QStringLiteral(".urdf"),
          tr("For robots: a link skin_base (the body frame), a fixed link per patch and per module. Metres and "
             "radians."),
-         [](const Solution& solution, const ReportFacts&) { return exportUrdf(solution.body); }},
+         [](const BodyModel& body, const ReportFacts&) { return exportUrdf(body); }},
         {tr("CSV table"), QStringLiteral(".csv"),
          tr("One row per module: number, type, patch, position (m) and unit quaternion (x y z w) in the body frame."),
-         [](const Solution& solution, const ReportFacts&) { return exportCsv(solution.body); }},
+         [](const BodyModel& body, const ReportFacts&) { return exportCsv(body); }},
         {tr("PLY mesh"), QStringLiteral(".ply"),
          tr("The outlines of all placed boards as faces with a colour per patch. Metres, body frame."),
-         [](const Solution& solution, const ReportFacts&) { return exportPly(solution.body); }},
+         [](const BodyModel& body, const ReportFacts&) { return exportPly(body); }},
         {tr("Report (PDF)"), QStringLiteral(".pdf"),
          tr("For people and files: verdict, reasons, figures, and a table of all modules. Millimetres, body frame."),
-         [](const Solution& solution, const ReportFacts& facts) {
-             return reportPdf(solution.body, facts).toStdString();
-         },
+         [](const BodyModel& body, const ReportFacts& facts) { return reportPdf(body, facts).toStdString(); }, true,
          true},
         {tr("Report (HTML)"), QStringLiteral(".html"), tr("The same for a browser."),
-         [](const Solution& solution, const ReportFacts& facts) {
-             return reportHtml(solution.body, facts).toStdString();
-         },
+         [](const BodyModel& body, const ReportFacts& facts) { return reportHtml(body, facts).toStdString(); }, true,
          true},
     };
     pool_.setMaxThreadCount(1);  // one file after the other
@@ -76,6 +76,7 @@ ExportPresenter::ExportPresenter(Workbench& workbench, QObject* parent) : QObjec
 }
 
 ExportPresenter::~ExportPresenter() {
+    isClosing_ = true;
     pool_.waitForDone();
 }
 
@@ -96,11 +97,42 @@ ReportFacts ExportPresenter::factsOf(const Solution& solution) const {
         facts.shortfalls.push_back(shortfall.text);
     if (solution.measurements->camera.width > 0)
         facts.camera = solution.measurements->camera;
+    const Session& session = workbench_.session();
+    if (session.isStale())
+        facts.shortfalls.push_back(
+            tr("the data have changed since: this body is of before the last change").toStdString());
+    if (const int skin = workbench_.chosenSkin(); skin >= 0)
+        facts.skinDevice = workbench_.skinOffers.at(static_cast<std::size_t>(skin)).name;
+    if (const int camera = workbench_.chosenCamera(); camera >= 0)
+        facts.cameraDevice = workbench_.cameraOffers.at(static_cast<std::size_t>(camera)).name;
     // While a newer camera is being solved with, this body is of the one before.
-    const Decisions& decisions = workbench_.session().decisions();
+    const Decisions& decisions = session.decisions();
     if (facts.camera && sameCamera(decisions.camera, facts.camera))
         facts.cameraFrom = sentenceOf(decisions.cameraOrigin);
     return facts;
+}
+
+std::function<std::string()> ExportPresenter::job(std::size_t format, std::shared_ptr<const Solution> solution,
+                                                  bool isPreview) {
+    const Session& session = workbench_.session();
+    return [this, solution, isPreview, what = formats_.at(format), facts = factsOf(*solution),
+            measured = session.measured(), decisions = session.decisions(),
+            isData = solution->revision == session.revision()]() mutable {
+        RunContext context;
+        context.isCancelled = [this, isPreview] { return isPreview && isClosing_; };
+        BodyModel body = solution->body;
+        const bool areKnown = std::all_of(measured.views.begin(), measured.views.end(), [&](const ScannedView& view) {
+            return !view.pictures || digests_.contains(view.pictures);
+        });
+        // What the body does not follow from would be none of its.
+        if (isData && what.isTraced && (!isPreview || areKnown)) {
+            if (const auto digests = digestSession(measured, decisions, digests_, context))
+                body.generator.recording_sha256 = *digests;
+        }
+        if (what.isReport)
+            addData(facts, measured, decisions, isPreview ? 0 : kMostCrops, context);
+        return what.bytes(body, facts);
+    };
 }
 
 void ExportPresenter::preview(std::size_t format, int lines) {
@@ -110,8 +142,10 @@ void ExportPresenter::preview(std::size_t format, int lines) {
         emit previewed({});
         return;
     }
-    auto work = [this, ask, lines, placed, facts = factsOf(*placed), make = formats_.at(format).bytes] {
-        const QString text = beginningOf(make(*placed, facts), lines);
+    auto work = [this, ask, lines, make = job(format, placed, true)] {
+        if (ask != asked_)
+            return;
+        const QString text = beginningOf(make(), lines);
         QMetaObject::invokeMethod(
             this,
             [this, ask, text] {
@@ -130,8 +164,8 @@ void ExportPresenter::write(std::size_t format, const std::filesystem::path& fil
         return;
     }
     ++writing_;
-    auto work = [this, file, placed, facts = factsOf(*placed), make = formats_.at(format).bytes] {
-        const QString why = complaintOfWriting(file, [&] { return make(*placed, facts); });
+    auto work = [this, file, placed, make = job(format, placed, false)] {
+        const QString why = complaintOfWriting(file, make);
         QMetaObject::invokeMethod(
             this,
             [this, file, placed, why] {

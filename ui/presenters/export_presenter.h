@@ -2,8 +2,10 @@
 
 #include <QObject>
 #include <QThreadPool>
+#include <atomic>
 #include <filesystem>
 
+#include "core/session/session_storage.h"
 #include "ui/presenters/workbench.h"
 #include "ui/print/report.h"
 
@@ -13,8 +15,9 @@ struct ExportFormat {
     QString name;
     QString suffix;       ///< of the file, with its dot
     QString description;  ///< what it holds, its frames and units
-    std::function<std::string(const Solution&, const ReportFacts&)> bytes;
-    bool isReport = false;  ///< for people: bears the time at which it was written
+    std::function<std::string(const BodyModel&, const ReportFacts&)> bytes;
+    bool isReport = false;  ///< for people: bears the time at which it was written, and the data with what decided
+    bool isTraced = false;  ///< bears the digests of the data
 };
 
 /// Writes the newest body for other programs, in the background: with 1,000 modules a file takes longer than a frame.
@@ -46,11 +49,17 @@ class ExportPresenter : public QObject {
     /// Null as body() is.
     [[nodiscard]] std::shared_ptr<const Solution> solution() const;
     [[nodiscard]] ReportFacts factsOf(const Solution& solution) const;
+    /// Makes the file's bytes, on the pool's thread. Digests of pictures take long: a preview does without those that
+    /// are not known yet.
+    [[nodiscard]] std::function<std::string()> job(std::size_t format, std::shared_ptr<const Solution> solution,
+                                                   bool isPreview);
 
     Workbench& workbench_;
     std::vector<ExportFormat> formats_;
-    std::uint64_t asked_ = 0;  ///< the newest preview
+    std::atomic<std::uint64_t> asked_ = 0;  ///< the newest preview
     int writing_ = 0;
+    PictureDigests digests_;  ///< touched by the pool's one thread only
+    std::atomic<bool> isClosing_ = false;
     QThreadPool pool_;
 };
 

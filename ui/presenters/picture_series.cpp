@@ -50,13 +50,25 @@ void PictureSeries::start(LitSets lit) {
     if (isBusy())
         return;
     lit_ = std::move(lit);
-    pictures_ = std::make_shared<Pictures>(lit_.size());
+    pictures_.assign(lit_.size(), {});
     frames_.assign(lit_.size(), {});
     began_ = Clock::now();
     told_ = 0;
     if (workbench_.skin() != nullptr)
         workbench_.skin()->prepare(lit_);
     handle(scan_run::Start{lit_.size(), toggles()});
+}
+
+void PictureSeries::extend(const LitSets& more) {
+    if (state_.phase != ScanRun::Phase::Decoding)
+        return;
+    const std::size_t look = frames_.back().look + 1;
+    lit_.insert(lit_.end(), more.begin(), more.end());
+    pictures_.resize(lit_.size());
+    frames_.resize(lit_.size(), {{}, {}, {}, look});
+    if (workbench_.skin() != nullptr)
+        workbench_.skin()->prepare(lit_);
+    handle(scan_run::Extend{more.size()});
 }
 
 scan_run::Toggles PictureSeries::toggles() const {
@@ -132,27 +144,26 @@ void PictureSeries::take(const CameraFrame& frame) {
 }
 
 void PictureSeries::keep(std::size_t frame) {
-    (*pictures_)[frame] = newest_.image;
+    pictures_[frame] = newest_.image;
     frames_[frame].lit = lit_[frame];
     frames_[frame].time_s = std::chrono::duration<double>(newest_.time).count();
-    while (told_ < pictures_->size() && !(*pictures_)[told_].empty())
+    while (told_ < pictures_.size() && !pictures_[told_].empty())
         emit kept(told_++);
 }
 
-/// Recordings have frames as they were taken; what moves meanwhile, moves on.
-void PictureSeries::sortByTime() {
+PictureSeries::Taken PictureSeries::taken() const {
     std::vector<std::size_t> order(frames_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return *frames_[a].time_s < *frames_[b].time_s; });
+    Taken taken;
     auto pictures = std::make_shared<Pictures>();
-    std::vector<FrameInfo> frames;
     for (const std::size_t k : order) {
-        pictures->push_back((*pictures_)[k]);
-        frames.push_back(std::move(frames_[k]));
+        pictures->push_back(pictures_[k]);
+        taken.frames.push_back(frames_[k]);
     }
-    pictures_ = std::move(pictures);
-    frames_ = std::move(frames);
+    taken.pictures = std::move(pictures);
+    return taken;
 }
 
 void PictureSeries::attachSkin() {
@@ -192,12 +203,9 @@ void PictureSeries::act(const scan_run::Effect& effect) {
                        if (skin != nullptr)
                            skin->light({});
                    },
-                   [&](scan_run::Decode) {
-                       sortByTime();
-                       emit complete();
-                   },
+                   [&](scan_run::Decode) { emit complete(); },
                    [&](scan_run::Discard) {
-                       pictures_.reset();
+                       pictures_.clear();
                        emit discarded();
                    },
                    [&](const StartTimer& timer) { timer_.start(timer.after); }, [&](StopTimer) { timer_.stop(); }},

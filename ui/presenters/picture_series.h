@@ -26,6 +26,8 @@ class PictureSeries : public QObject {
     explicit PictureSeries(Workbench& workbench, QObject* parent = nullptr);
 
     void start(LitSets lit);
+    /// After complete(): these are taken, too, and complete() comes again.
+    void extend(const LitSets& more);
     void pause();
     void resume();
     void cancel();
@@ -41,10 +43,14 @@ class PictureSeries : public QObject {
     [[nodiscard]] bool isBusy() const { return needsCamera() || state_.phase == ScanRun::Phase::Decoding; }
     [[nodiscard]] bool needsCamera() const { return state_.isRunning() || state_.phase == ScanRun::Phase::Paused; }
     [[nodiscard]] const LitSets& lit() const { return lit_; }
-    /// Those that are taken so far, one entry per lit set; null before the first start and after a failure. Once it is
-    /// complete, in the order in which they were taken.
-    [[nodiscard]] std::shared_ptr<const Pictures> pictures() const { return pictures_; }
-    [[nodiscard]] const std::vector<FrameInfo>& frames() const { return frames_; }
+    /// The one that was taken of a lit set, see kept().
+    [[nodiscard]] const cv::Mat& pictureOf(std::size_t frame) const { return pictures_[frame]; }
+    /// All that were taken, in the order in which they were: what moves meanwhile, moves on. After complete().
+    struct Taken {
+        std::vector<FrameInfo> frames;
+        std::shared_ptr<const Pictures> pictures;
+    };
+    [[nodiscard]] Taken taken() const;
 
     /// Share of the pictures that are taken, and how long the rest takes at the pace so far; nothing at the beginning.
     [[nodiscard]] double done() const;
@@ -66,7 +72,6 @@ class PictureSeries : public QObject {
     void attachSkin();
     void take(const CameraFrame& frame);
     void keep(std::size_t frame);
-    void sortByTime();
     [[nodiscard]] scan_run::Toggles toggles() const;
     void handle(const scan_run::Event& event);
     void act(const scan_run::Effect& effect);
@@ -77,9 +82,9 @@ class PictureSeries : public QObject {
     ScanRun state_;
     QTimer timer_;
     LitSets lit_;
-    std::shared_ptr<Pictures> pictures_;
-    std::vector<FrameInfo> frames_;
-    std::size_t told_ = 0;  ///< by kept()
+    Pictures pictures_;              ///< one per lit set
+    std::vector<FrameInfo> frames_;  ///< likewise
+    std::size_t told_ = 0;           ///< by kept()
     CameraFrame newest_;
     cv::Mat reference_;
     Clock::time_point began_;

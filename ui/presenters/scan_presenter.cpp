@@ -16,14 +16,12 @@ ScanPresenter::ScanPresenter(Workbench& workbench, QObject* parent)
     countPictures();
     connect(&series_, &PictureSeries::runningChanged, &workbench, &Workbench::setScanning);
     connect(&series_, &PictureSeries::stateChanged, this, &ScanPresenter::seriesChanged);
-    connect(&series_, &PictureSeries::kept, this,
-            [this](std::size_t frame) { watcher_.add((*series_.pictures())[frame]); });
-    connect(&series_, &PictureSeries::complete, this, &ScanPresenter::decode);
-    connect(&series_, &PictureSeries::discarded, this, [this] {
-        watcher_.clear();
-        if (cancelled_)
-            *cancelled_ = true;
+    connect(&series_, &PictureSeries::kept, this, [this](std::size_t frame) {
+        if (frame < firstLook_)
+            watcher_.add(series_.pictureOf(frame));
     });
+    connect(&series_, &PictureSeries::complete, this, &ScanPresenter::decode);
+    connect(&series_, &PictureSeries::discarded, this, &ScanPresenter::discard);
     connect(&watcher_, &SpotWatcher::changed, this, &ScanPresenter::spotsChanged);
     connect(&decoding_, &QFutureWatcherBase::finished, this, &ScanPresenter::decodingFinished);
     if (workbench.camera() != nullptr)
@@ -63,7 +61,11 @@ void ScanPresenter::start(const std::optional<std::string>& replaced) {
     if (!obstacle().isEmpty())
         return;
     // Words change from scan to scan: what two modules that look alike confuse in one view they don't in the next.
-    LitSets lit = codedScan(modules(), workbench_.session().measured().views.size());
+    const std::uint64_t seed = workbench_.session().measured().views.size();
+    LitSets lit = codedScan(modules(), seed);
+    firstLook_ = lit.size();
+    further_.emplace(seed);
+    result_.reset();
     watcher_.begin(modules(), lit);
     series_.start(std::move(lit));
 }
@@ -138,14 +140,31 @@ void ScanPresenter::seriesChanged() {
         setActive(isActive_);
 }
 
+const std::vector<ModuleId>& ScanPresenter::wanted() const {
+    static const std::vector<ModuleId> kNobody;
+    return further_ && isBusy() ? further_->wanted() : kNobody;
+}
+
+void ScanPresenter::discard() {
+    if (cancelled_)
+        *cancelled_ = true;
+    // What breaks off a further look takes nothing from those before it.
+    if (result_ && !result_->view.decoded.found.empty() && state().phase == ScanRun::Phase::Failed)
+        deliver(*std::exchange(result_, std::nullopt));
+    else
+        watcher_.clear();
+    result_.reset();
+}
+
 void ScanPresenter::decode() {
     cancelled_ = std::make_shared<std::atomic<bool>>(false);
     RunContext context;
     context.isCancelled = [cancelled = cancelled_] { return cancelled->load(); };
-    decoding_.setFuture(QtConcurrent::run([frames = series_.frames(), pictures = series_.pictures(),
-                                           modules = modules(), context = std::move(context)]() mutable {
-        return std::make_shared<Outcome>(decodeScan(std::move(frames), std::move(pictures), modules, context));
-    }));
+    decoding_.setFuture(
+        QtConcurrent::run([taken = series_.taken(), modules = modules(), context = std::move(context)]() mutable {
+            return std::make_shared<Outcome>(
+                decodeScan(std::move(taken.frames), std::move(taken.pictures), modules, context));
+        }));
 }
 
 void ScanPresenter::decodingFinished() {
@@ -156,7 +175,19 @@ void ScanPresenter::decodingFinished() {
         series_.fail(ScanRun::Fault::NotDecoded, QString::fromStdString(outcome->error()));
         return;
     }
-    ScanResult result = **std::move(outcome);
+    if (looksAgain_) {
+        if (const auto look = further_->next((*outcome)->view.decoded)) {
+            result_ = **std::move(outcome);
+            series_.extend(*look);
+            return;
+        }
+    }
+    result_.reset();
+    series_.finish();
+    deliver(**std::move(outcome));
+}
+
+void ScanPresenter::deliver(ScanResult result) {
     std::string name;
     if (replaced_ && workbench_.session().findView(*replaced_) != nullptr) {
         name = *replaced_;
@@ -165,7 +196,6 @@ void ScanPresenter::decodingFinished() {
     } else {
         name = workbench_.session().addView(std::move(result.view));
     }
-    series_.finish();
     showView(name);
     emit scanned(name, result.moved_px, watcher_.spots().size());
 }

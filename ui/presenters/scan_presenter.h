@@ -4,6 +4,7 @@
 #include <QObject>
 #include <atomic>
 
+#include "core/vision/further_looks.h"
 #include "ui/presenters/detection_model.h"
 #include "ui/presenters/picture_series.h"
 #include "ui/presenters/scan_job.h"
@@ -30,6 +31,13 @@ class ScanPresenter : public QObject {
     void pause() { series_.pause(); }
     void resume() { series_.resume(); }
     void cancel() { series_.cancel(); }
+
+    /// Modules that are being looked for once more, since light was left that blinks like none that was found; empty in
+    /// the first look at all of them.
+    [[nodiscard]] const std::vector<ModuleId>& wanted() const;
+    /// Whether to look again, where the first look leaves modules undecided.
+    [[nodiscard]] bool looksAgain() const { return looksAgain_; }
+    void setLooksAgain(bool again) { looksAgain_ = again; }
 
     /// From the first light to the new view.
     [[nodiscard]] bool isBusy() const { return series_.isBusy(); }
@@ -69,7 +77,9 @@ class ScanPresenter : public QObject {
     void attachCamera();
     void seriesChanged();
     void decode();
+    void discard();
     void decodingFinished();
+    void deliver(ScanResult result);
 
     using Outcome = tl::expected<ScanResult, std::string>;
 
@@ -78,6 +88,10 @@ class ScanPresenter : public QObject {
     PictureSeries series_;
     SpotWatcher watcher_;
     std::optional<std::string> replaced_;
+    std::size_t firstLook_ = 0;  ///< pictures of it
+    std::optional<FurtherLooks> further_;
+    std::optional<ScanResult> result_;  ///< of all looks so far, should the next one be broken off
+    bool looksAgain_ = true;
     CameraFrame newest_;
     std::shared_ptr<std::atomic<bool>> cancelled_;
     QFutureWatcher<std::shared_ptr<Outcome>> decoding_;

@@ -66,7 +66,7 @@ ViewPreview::ViewPreview(Workbench& workbench, ScanPresenter& scan, const ViewsP
             again_.start(kPatience);
     });
     connect(&series_, &PictureSeries::kept, this,
-            [this](std::size_t frame) { watcher_.add((*series_.pictures())[frame]); });
+            [this](std::size_t frame) { watcher_.add(series_.pictureOf(frame)); });
     connect(&series_, &PictureSeries::complete, this, [this] {
         series_.finish();
         // Should the spots never come: a camera that changed its format meanwhile gives pictures that don't fit.

@@ -9,31 +9,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/print/html.h"
+#include "ui/print/report_detections.h"
+
 namespace skincal {
 namespace {
 
+using namespace html;
+
 QString tr(const char* text) {
     return QCoreApplication::translate("Report", text);
-}
-
-QString escaped(const std::string& text) {
-    return QString::fromStdString(text).toHtmlEscaped();
-}
-
-QString row(const QStringList& cells, const QString& tag = QStringLiteral("td")) {
-    QString html = QStringLiteral("<tr>");
-    for (const QString& cell : cells)
-        html += QStringLiteral("<%1>%2</%1>").arg(tag, cell);
-    return html + QStringLiteral("</tr>\n");
-}
-
-QString table(const QStringList& heads, const QString& rows) {
-    return QStringLiteral("<table border=\"1\" cellspacing=\"0\" cellpadding=\"3\">\n") +
-           (heads.isEmpty() ? QString() : row(heads, QStringLiteral("th"))) + rows + QStringLiteral("</table>\n");
-}
-
-QString heading(const QString& text) {
-    return QStringLiteral("<h2>%1</h2>\n").arg(text);
 }
 
 QString list(const std::vector<std::string>& texts) {
@@ -47,7 +32,7 @@ QString millimetres(double metres) {
     return QString::number(1e3 * metres, 'f', 2);
 }
 
-QString origin(const BodyGenerator& generator) {
+QString origin(const BodyGenerator& generator, const ReportFacts& facts) {
     QString rows = row({tr("Program"), escaped(generator.program + " " + generator.version)});
     rows += row({tr("Method"), escaped(generator.method)});
     for (const auto& [name, value] : generator.options) {
@@ -55,9 +40,20 @@ QString origin(const BodyGenerator& generator) {
         if (name != "method")
             rows += row({escaped(name), escaped(value)});
     }
-    for (const auto& [file, digest] : generator.recording_sha256)
-        rows += row({escaped(file), QStringLiteral("SHA-256 ") + escaped(digest)});
+    if (!facts.skinDevice.isEmpty())
+        rows += row({tr("Skin"), facts.skinDevice.toHtmlEscaped()});
+    if (!facts.cameraDevice.isEmpty())
+        rows += row({tr("Camera"), facts.cameraDevice.toHtmlEscaped()});
+    if (facts.poses > 0)
+        rows += row({tr("Poses"), QString::number(facts.poses)});
     return table({}, rows);
+}
+
+QString digests(const std::map<std::string, std::string>& ofFiles) {
+    QString rows;
+    for (const auto& [file, digest] : ofFiles)
+        rows += row({escaped(file), QStringLiteral("<code>%1</code>").arg(escaped(digest))});
+    return table({tr("File"), tr("SHA-256")}, rows);
 }
 
 QString figures(const BodyQuality& quality) {
@@ -146,7 +142,7 @@ QString views(const BodyModel& body) {
     return table({tr("View"), tr("Detections used"), tr("Residual, px"), tr("Status")}, rows);
 }
 
-QString modules(const BodyModel& body) {
+QString modules(const BodyModel& body, const ReportFacts& facts) {
     QString rows;
     for (const BodyModule& module : body.modules) {
         QStringList cells{QString::number(module.id.value), escaped(module.type),
@@ -163,11 +159,17 @@ QString modules(const BodyModel& body) {
               << (!module.T_body_module ? escaped(module.status)
                   : module.seen         ? tr("pictures")
                                         : tr("gravity and links"));
+        if (!facts.uniqueIds.empty()) {
+            const auto known = facts.uniqueIds.find(module.id);
+            cells << (known != facts.uniqueIds.end() ? escaped(known->second) : tr("–"));
+        }
         rows += row(cells);
     }
-    return table({tr("Module"), tr("Type"), tr("Patch"), tr("x, mm"), tr("y, mm"), tr("z, mm"), tr("σ, mm"), tr("σ, °"),
-                  tr("Rests on")},
-                 rows);
+    QStringList heads{tr("Module"), tr("Type"),  tr("Patch"), tr("x, mm"),   tr("y, mm"),
+                      tr("z, mm"),  tr("σ, mm"), tr("σ, °"),  tr("Rests on")};
+    if (!facts.uniqueIds.empty())
+        heads << tr("Unique id");
+    return table(heads, rows);
 }
 
 }  // namespace
@@ -190,7 +192,13 @@ QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
                 .arg(tr("Verdict: %1").arg(QString::fromUtf8(name(body.quality.trust).data())));
     html += reasons.empty() ? QStringLiteral("<p>%1</p>\n").arg(tr("Nothing is missing, and nothing disagrees."))
                             : list(reasons);
-    html += heading(tr("Made by")) + origin(body.generator);
+    if (!facts.decisions.empty()) {
+        std::vector<std::string> decisions;
+        for (const QString& decision : facts.decisions)
+            decisions.push_back(decision.toStdString());
+        html += heading(tr("Decided by the operator")) + list(decisions);
+    }
+    html += heading(tr("Made by")) + origin(body.generator, facts);
     if (facts.camera)
         html += heading(tr("Camera")) + camera(facts);
     html += heading(tr("Quality")) + figures(body.quality);
@@ -202,7 +210,11 @@ QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
         QStringLiteral("<p>%1</p>\n")
             .arg(tr("Positions in the body frame (%1). σ is one standard deviation per axis, of position and rotation.")
                      .arg(escaped(body.body_frame))) +
-        modules(body);
+        modules(body, facts);
+    if (!facts.scans.empty())
+        html += detectionsHtml(body, facts.scans);
+    if (!body.generator.recording_sha256.empty())
+        html += heading(tr("Data")) + digests(body.generator.recording_sha256);
     return html + QStringLiteral("</body></html>\n");
 }
 

@@ -2,22 +2,48 @@
 
 #include <QByteArray>
 #include <QString>
+#include <map>
+#include <vector>
 
 #include "core/estimation/body_model.h"
+#include "core/vision/detection.h"
 
 namespace skincal {
 
-/// What a report says besides what the body itself knows.
-struct ReportFacts {
-    QString when;                         ///< it was made, as it shall be printed
-    std::vector<std::string> shortfalls;  ///< what the data lack, in sentences
-    std::optional<CameraModel> camera;    ///< that took the pictures
-    QString cameraFrom;                   ///< where its intrinsics come from; empty where nobody knows
+/// A spot that was taken for a module's LED, and why.
+struct ReportedDetection {
+    ModuleId module;
+    Vector2d pixel = Vector2d::Zero();  ///< raw (distorted)
+    double sigma_px = 0;
+    std::optional<WordReading> reading{};  ///< where it was decoded from pictures
+    QByteArray crops{};                    ///< PNG of the spot lit, dark and the difference; empty where there is none
+    bool isRejected = false;               ///< by the operator
 };
 
-/// Everything that makes a calibration traceable, for people: when and by which version and method it was made and from
-/// which files, the verdict with its reasons, quality figures, and a table of patches, views and modules with position,
-/// standard deviation and what each rests on. A page for a browser, without any reference to other files.
+struct ReportedScan {
+    std::string view;
+    std::size_t pictures = 0;
+    std::vector<ReportedDetection> detections;
+};
+
+/// What a report says besides what the body itself knows.
+struct ReportFacts {
+    QString when{};                         ///< it was made, as it shall be printed
+    std::vector<std::string> shortfalls{};  ///< what the data lack, in sentences
+    std::optional<CameraModel> camera{};    ///< that took the pictures
+    QString cameraFrom{};                   ///< where its intrinsics come from; empty where nobody knows
+    QString skinDevice{};                   ///< by which the data came; empty where nobody knows
+    QString cameraDevice{};
+    std::size_t poses = 0;                        ///< that count
+    std::vector<QString> decisions{};             ///< of the operator, in sentences
+    std::map<ModuleId, std::string> uniqueIds{};  ///< of modules that have one
+    std::vector<ReportedScan> scans{};            ///< that count
+};
+
+/// Everything that makes a calibration traceable, for people: when and by which version, method and devices it was made
+/// and from which files, the verdict with its reasons, what the operator decided, quality figures, a table of patches,
+/// views and modules with position, standard deviation and what each rests on, and for each detection what decided: the
+/// word sent and received, and the spot itself. A page for a browser, without any reference to other files.
 [[nodiscard]] QString reportHtml(const BodyModel& body, const ReportFacts& facts);
 
 /// The same on A4 pages with numbers.

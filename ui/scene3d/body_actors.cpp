@@ -66,6 +66,7 @@ BodyActors::BodyActors(vtkRenderer& renderer)
       guide_(emptyActor(renderer)),
       guideFill_(emptyActor(renderer)),
       up_(emptyActor(renderer)),
+      contacts_(emptyActor(renderer)),
       mesh_(emptyActor(renderer)) {
     renderer.AddActor(boards_.actor());
     asLines(*cameras_, 1.4);
@@ -79,8 +80,10 @@ BodyActors::BodyActors(vtkRenderer& renderer)
     paint(*selectedUnder_, {10, 11, 13});
     asLines(*selected_, 3.5);
     paint(*selected_, {255, 255, 255});
-    up_->GetProperty()->SetAmbient(0.45);
-    up_->GetProperty()->SetDiffuse(0.6);
+    for (const auto& arrow : {up_, contacts_}) {
+        arrow->GetProperty()->SetAmbient(0.45);
+        arrow->GetProperty()->SetDiffuse(0.6);
+    }
     ellipsoids_->GetProperty()->SetOpacity(0.9);
     ellipsoids_->GetProperty()->SetAmbient(0.35);
     ellipsoids_->GetProperty()->SetDiffuse(0.75);
@@ -104,7 +107,7 @@ void BodyActors::show(const BodyModel& body, const SceneLayout& layout) {
 void BodyActors::clear() {
     const SceneLayout nothing;
     boards_.build(nothing);
-    for (const auto& actor : {cameras_, ellipsoids_, selectedUnder_, selected_, guide_, guideFill_, up_})
+    for (const auto& actor : {cameras_, ellipsoids_, selectedUnder_, selected_, guide_, guideFill_, up_, contacts_})
         actor->VisibilityOff();
     boards_.actor()->VisibilityOff();
 }
@@ -121,6 +124,7 @@ void BodyActors::setDark(bool dark) {
     paint(*guide_, guideColour(dark));
     paint(*guideFill_, guideColour(dark));
     paint(*up_, guideColour(dark));
+    paint(*contacts_, guideColour(dark));
     paint(*mesh_, {150, 158, 171});
 }
 
@@ -160,6 +164,10 @@ void BodyActors::setGuideUp(const std::optional<Vector3d>& direction, const Scen
     if (direction)
         give(*up_,
              arrowOf(layout.centre + 0.6 * layout.radius * direction->normalized(), *direction, 0.6 * layout.radius));
+}
+
+void BodyActors::setContacts(std::span<const ContactMark> contacts) {
+    give(*contacts_, contactArrows(contacts));
 }
 
 void BodyActors::setMesh(vtkPolyData* mesh) {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "ui/scene3d/board_mesh.h"
+#include "ui/scene3d/scene_glyphs.h"
 
 class vtkActor;
 class vtkPolyData;
@@ -34,6 +35,7 @@ class BodyActors {
     void setSelected(const SceneLayout& layout, std::span<const ModuleId> modules);
     void setGuideCamera(const std::optional<Isometry3d>& T_s_v, double size);
     void setGuideUp(const std::optional<Vector3d>& direction, const SceneLayout& layout);
+    void setContacts(std::span<const ContactMark> contacts);
     void setMesh(vtkPolyData* mesh);
 
     /// Tip of the arrow of setGuideUp.
@@ -44,7 +46,8 @@ class BodyActors {
   private:
     vtkRenderer& renderer_;
     BoardMesh boards_;
-    vtkSmartPointer<vtkActor> cameras_, ellipsoids_, selectedUnder_, selected_, guide_, guideFill_, up_, mesh_;
+    vtkSmartPointer<vtkActor> cameras_, ellipsoids_, selectedUnder_, selected_, guide_, guideFill_, up_, contacts_,
+        mesh_;
 };
 
 /// Colours of what is no board, as the legend shows them too.

@@ -21,6 +21,14 @@ QColor toQt(const Rgb& colour) {
     return {colour[0], colour[1], colour[2]};
 }
 
+void addCamera(std::vector<Vector3d>& points, const Isometry3d& T_r_v, double size) {
+    points.emplace_back(T_r_v.translation());
+    for (const double x : {-0.8, 0.8}) {
+        for (const double y : {-0.45, 0.45})
+            points.push_back(T_r_v * Vector3d(size * Vector3d(x, y, 1)));
+    }
+}
+
 }  // namespace
 
 void BodyViewWidget::lookAt(std::span<const Vector3d> points, bool anew) {
@@ -59,6 +67,8 @@ std::vector<Vector3d> BodyViewWidget::bodyPoints() const {
     std::vector<Vector3d> points = layout_.corners();
     if (layout_.anyPlaced && guideUp_)
         points.push_back(BodyActors::tipOfUp(*guideUp_, layout_));
+    if (layout_.anyPlaced && guideCamera_)
+        addCamera(points, *guideCamera_, 2 * BodyActors::cameraSize(layout_));
     return points;
 }
 
@@ -79,21 +89,12 @@ void BodyViewWidget::resetView() {
 
 void BodyViewWidget::fitEverything() {
     std::vector<Vector3d> points = bodyPoints();
-    const auto add = [&](const Isometry3d& T_r_v, double size) {
-        points.emplace_back(T_r_v.translation());
-        for (const double x : {-0.8, 0.8}) {
-            for (const double y : {-0.45, 0.45})
-                points.push_back(T_r_v * Vector3d(size * Vector3d(x, y, 1)));
-        }
-    };
     if (body_ && cameras_) {
         for (const auto& view : body_->views) {
             if (view.T_body_camera)
-                add(*view.T_body_camera, BodyActors::cameraSize(layout_));
+                addCamera(points, *view.T_body_camera, BodyActors::cameraSize(layout_));
         }
     }
-    if (layout_.anyPlaced && guideCamera_)
-        add(*guideCamera_, 2 * BodyActors::cameraSize(layout_));
     lookAt(points, false);
     movedByUser_ = true;
 }

@@ -47,6 +47,7 @@ void BodyViewWidget::warmUp() {
     actors_->setSelected(layout, std::vector{module.id});
     actors_->setGuideCamera(Isometry3d::Identity(), layout.radius);
     actors_->setGuideUp(Vector3d::UnitZ(), layout);
+    actors_->setContacts(std::vector{ContactMark{Vector3d::Zero(), Vector3d::UnitZ(), layout.radius}});
     actors_->setMesh(boardsOf(cell));
     scene_->warmUp();
     actors_->setMesh(nullptr);
@@ -66,6 +67,7 @@ void BodyViewWidget::setBody(std::shared_ptr<const BodyModel> body) {
     const bool wasEmpty = layout_.modules.empty();
     const bool wasPlaced = layout_.anyPlaced;
     body_ = std::move(body);
+    setContacts({});
     layout_ = body_ ? layOut(*body_) : SceneLayout{};
     if (body_)
         actors_->show(*body_, layout_);
@@ -134,9 +136,12 @@ void BodyViewWidget::setCamerasShown(bool shown) {
 }
 
 void BodyViewWidget::setGuideCamera(const std::optional<Isometry3d>& T_r_v) {
+    const bool isOther = T_r_v.has_value() != guideCamera_.has_value() || (T_r_v && !T_r_v->isApprox(*guideCamera_));
     guideCamera_ = T_r_v;
     updateGuides();
     updateWords();
+    if (isOther && !movedByUser_ && layout_.anyPlaced)
+        lookAt(bodyPoints(), false);
 }
 
 void BodyViewWidget::setGuideUp(const std::optional<Vector3d>& up_r) {
@@ -164,6 +169,14 @@ void BodyViewWidget::setSelected(std::vector<ModuleId> modules) {
     actors_->setSelected(layout_, selected_);
     scene_->requestDraw();
     updateWords();
+}
+
+void BodyViewWidget::setContacts(std::vector<ContactMark> contacts) {
+    if (contacts.empty() && contacts_.empty())
+        return;
+    contacts_ = std::move(contacts);
+    actors_->setContacts(contacts_);
+    scene_->requestDraw();
 }
 
 void BodyViewWidget::setMesh(vtkPolyData* mesh) {

@@ -11,6 +11,7 @@
 
 #include "core/estimation/body_model.h"
 #include "ui/scene3d/body_words.h"
+#include "ui/scene3d/scene_glyphs.h"
 #include "ui/scene3d/scene_layout.h"
 
 class vtkPolyData;
@@ -47,7 +48,8 @@ class BodyViewWidget : public QWidget {
     void setEllipsoidsShown(bool shown);
     void setCamerasShown(bool shown);
 
-    /// A ghost of the camera where to stand next (T_body_camera), with words beside it.
+    /// A ghost of the camera where to stand next (T_body_camera), with words beside it, in view unless the user has
+    /// moved that.
     void setGuideCamera(const std::optional<Isometry3d>& T_r_v);
     /// An arrow along the direction, body frame, that should point up next. Throws std::logic_error for zero.
     void setGuideUp(const std::optional<Vector3d>& up_r);
@@ -77,6 +79,9 @@ class BodyViewWidget : public QWidget {
     /// How far each module's face stands out along its normal, m, likewise; 0 for missing ones. Forgotten with the
     /// snapshot.
     void setCellHeights(std::span<const float> heights);
+    /// An arrow on the skin for each. Forgotten with the snapshot.
+    void setContacts(std::vector<ContactMark> contacts);
+    [[nodiscard]] const std::vector<ContactMark>& contacts() const { return contacts_; }
     /// What 0 and 1 of setCellValues stand for.
     void setValueWords(const QString& title, const QString& low, const QString& high);
 
@@ -157,6 +162,7 @@ class BodyViewWidget : public QWidget {
     std::optional<Vector3d> guideUp_;
     std::vector<ModuleId> selected_;
     std::vector<ModuleId> measured_;  ///< at most two
+    std::vector<ContactMark> contacts_;
 };
 
 }  // namespace skincal

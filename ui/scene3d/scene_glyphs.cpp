@@ -1,5 +1,6 @@
 #include "ui/scene3d/scene_glyphs.h"
 
+#include <vtkAppendPolyData.h>
 #include <vtkArrowSource.h>
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
@@ -133,6 +134,18 @@ vtkSmartPointer<vtkPolyData> arrowOf(const Vector3d& from, const Vector3d& direc
     filter->SetInputConnection(source->GetOutputPort());
     filter->Update();
     return filter->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> contactArrows(std::span<const ContactMark> contacts) {
+    auto all = vtkSmartPointer<vtkAppendPolyData>::New();
+    for (const ContactMark& contact : contacts) {
+        const Vector3d normal = contact.normal_s.normalized();
+        all->AddInputData(arrowOf(contact.point_s + contact.length * normal, -normal, contact.length));
+    }
+    if (contacts.empty())
+        return vtkSmartPointer<vtkPolyData>::New();
+    all->Update();
+    return all->GetOutput();
 }
 
 }  // namespace skincal

@@ -2,6 +2,8 @@
 
 #include <vtkSmartPointer.h>
 
+#include <span>
+
 #include "ui/scene3d/scene_layout.h"
 
 class vtkPolyData;
@@ -20,5 +22,15 @@ namespace skincal {
 /// An arrow as a surface.
 /// @param direction  of any length but zero.
 [[nodiscard]] vtkSmartPointer<vtkPolyData> arrowOf(const Vector3d& from, const Vector3d& direction, double length);
+
+/// Something that presses on the skin.
+struct ContactMark {
+    Vector3d point_s = Vector3d::Zero();    ///< scene, which for placed modules is the body frame, m
+    Vector3d normal_s = Vector3d::UnitZ();  ///< out of the skin, of any length but zero
+    double length = 0;                      ///< of its arrow, m
+};
+
+/// Arrows that stand on the skin, their tips where it is touched, along the normal.
+[[nodiscard]] vtkSmartPointer<vtkPolyData> contactArrows(std::span<const ContactMark> contacts);
 
 }  // namespace skincal

@@ -61,6 +61,7 @@ void DemoStage::leave() {
     setFullScreen(false);
     isActive_ = false;
     view_.setCellHeights({});
+    view_.setContacts({});
     view_.setColourMode(before_);
     view_.setCamerasShown(true);
     view_.setSelected(selectedBefore_);
@@ -73,6 +74,20 @@ void DemoStage::showPicture() {
     view_.setCellValues(presenter_.picture().values);
     view_.setCellHeights(page_.isRaised() ? std::span<const float>(presenter_.picture().heights)
                                           : std::span<const float>());
+    view_.setContacts(contactMarks());
+}
+
+std::vector<ContactMark> DemoStage::contactMarks() const {
+    std::vector<ContactMark> marks;
+    const auto& contacts = presenter_.picture().contacts;
+    const double longest = 0.35 * view_.layoutShown().radius;
+    for (const TouchContact& contact : contacts) {
+        // The strongest comes first.
+        const double share = contacts.front().force > 0 ? contact.force / contacts.front().force : 1;
+        if (contact.position_r && contact.normal_r)
+            marks.push_back({*contact.position_r, *contact.normal_r, (0.4 + 0.6 * share) * longest});
+    }
+    return marks;
 }
 
 void DemoStage::showSelection() {

@@ -5,6 +5,7 @@
 #include <QTimer>
 
 #include "ui/scene3d/body_words.h"
+#include "ui/scene3d/scene_glyphs.h"
 #include "ui/scene3d/touch_filter.h"
 
 namespace skincal {
@@ -35,6 +36,7 @@ class DemoStage : public QObject {
     void enter();
     void leave();
     void showPicture();
+    [[nodiscard]] std::vector<ContactMark> contactMarks() const;
     void showSelection();
     void tellTheWayBack();
 

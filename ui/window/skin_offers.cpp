@@ -1,14 +1,17 @@
 #include "ui/window/skin_offers.h"
 
+#include <QFileInfo>
 #include <QSerialPortInfo>
 #include <algorithm>
 
+#include "core/device/recorded_skin.h"
 #include "ui/presenters/skin_offer.h"
 
 namespace skincal {
 namespace {
 
 constexpr auto kPort = "port:";
+constexpr auto kRecording = "recording:";
 constexpr int kLookEvery_ms = 1000;
 
 QString describe(const QSerialPortInfo& port) {
@@ -27,8 +30,23 @@ bool isPlugged(const QSerialPortInfo& port) {
 
 SkinOffers::SkinOffers(Workbench& workbench, QObject* parent) : QObject(parent), workbench_(workbench), timer_(this) {
     connect(&timer_, &QTimer::timeout, this, &SkinOffers::refresh);
+    connect(&workbench.session(), &Session::opened, this, &SkinOffers::offerRecording);
     timer_.start(kLookEvery_ms);
     refresh();
+}
+
+void SkinOffers::offerRecording(const QString& directory) {
+    Offer<SkinDevice> offer;
+    offer.name = tr("Recording %1").arg(QFileInfo(directory).fileName());
+    offer.description = tr("The network as it was recorded; it does not answer");
+    offer.make = [name = offer.name, skin = workbench_.session().measured().skin] {
+        return std::make_unique<RecordedSkin>(name, skin);
+    };
+    offer.key = QLatin1String(kRecording) + directory;
+    std::vector<Offer<SkinDevice>> offers = workbench_.skinOffers;
+    std::erase_if(offers, [&](const Offer<SkinDevice>& other) { return other.key == offer.key; });
+    offers.push_back(std::move(offer));
+    workbench_.setSkinOffers(std::move(offers));
 }
 
 void SkinOffers::refresh() {

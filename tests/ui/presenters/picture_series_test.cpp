@@ -121,30 +121,48 @@ class TimedSeries {
     }
     /// How long it takes by the rig's clock; nothing where it fails.
     [[nodiscard]] std::optional<Time> take(std::uint64_t words) {
-        std::vector<ModuleId> modules;
-        for (const SkinModule& module : desk.rig.world().skin.modules)
-            modules.push_back(module.id);
         const Time began = desk.rig.now();
         order.clear();
         periods = 0;
-        series->start(codedScan(modules, words));
+        series->start(codedScan(modules(), words));
         const auto phase = [&] { return series->state().phase; };
         if (!test::waitFor([&] { return !series->state().isRunning(); }) || phase() != ScanRun::Phase::Decoding)
             return std::nullopt;
         const Time took = desk.rig.now() - began;
-        frames = series->frames();
-        pictures = series->pictures();
+        compare();
+        if (!isExtended)
+            series->finish();
+        return took;
+    }
+    [[nodiscard]] std::vector<ModuleId> modules() const {
+        std::vector<ModuleId> modules;
+        for (const SkinModule& module : desk.rig.world().skin.modules)
+            modules.push_back(module.id);
+        return modules;
+    }
+    /// After a first scan that is not finished yet.
+    [[nodiscard]] bool takeMore(const LitSets& more) {
+        series->extend(more);
+        const auto phase = [&] { return series->state().phase; };
+        if (!test::waitFor([&] { return !series->state().isRunning(); }) || phase() != ScanRun::Phase::Decoding)
+            return false;
+        compare();
+        return true;
+    }
+    void compare() {
+        auto taken = series->taken();
+        frames = std::move(taken.frames);
+        pictures = std::move(taken.pictures);
         for (const FrameInfo& frame : frames) {
             const auto time = std::chrono::round<Time>(std::chrono::duration<double>(*frame.time_s));
             const auto during = desk.rig.litDuring(time);
             wrong += during.size() == 1 && sameLit(during.front().lit, frame.lit) ? 0 : 1;
         }
-        series->finish();
-        return took;
     }
 
     test::Desk desk;
     std::unique_ptr<PictureSeries> series;
+    bool isExtended = false;  ///< the scan is not over after take()
     int wrong = 0;
     int periods = 0;
     std::vector<std::size_t> order;
@@ -167,6 +185,28 @@ TEST(PictureSeries, TakesThreeSecondsForAThousandModules) {
     EXPECT_EQ(timed.periods, 2);
     EXPECT_LE(*took, 3s);
     std::cout << "32 pictures of 1,000 modules in " << *took / 1ms << " ms of the camera's time\n";
+}
+
+TEST(PictureSeries, TakesMoreWithoutTimingLightAgain) {
+    TimedSeries timed("coded");
+    timed.isExtended = true;
+    ASSERT_TRUE(timed.take(0));
+    const std::size_t first = timed.frames.size();
+    const int timings = timed.series->state().timings;
+    const std::vector<ModuleId> modules = timed.modules();
+    const LitSets more = codedScan(std::span(modules).first(9), 1);
+    ASSERT_TRUE(timed.takeMore(more));
+    EXPECT_EQ(timed.wrong, 0);
+    EXPECT_EQ(timed.frames.size(), first + more.size());
+    EXPECT_EQ(timed.series->state().timings, timings);
+    EXPECT_EQ(timed.series->state().phase, ScanRun::Phase::Decoding);
+    EXPECT_EQ(timed.order.size(), first + more.size());
+    EXPECT_TRUE(std::is_sorted(timed.order.begin(), timed.order.end()));
+    for (std::size_t k = 1; k < timed.frames.size(); ++k)
+        EXPECT_LT(*timed.frames[k - 1].time_s, *timed.frames[k].time_s);
+    timed.series->finish();
+    timed.series->extend(more);
+    EXPECT_EQ(timed.series->state().phase, ScanRun::Phase::Done) << "what is done is not taken up again";
 }
 
 TEST(PictureSeries, TakesNoPictureForAnotherWhateverTheCameraIsLike) {

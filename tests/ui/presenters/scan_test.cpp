@@ -38,6 +38,13 @@ void expectSpotsNearTruth(Desk& desk, const ScannedView& view) {
     }
 }
 
+std::vector<ModuleId> idsOf(const Skin& skin) {
+    std::vector<ModuleId> ids;
+    for (const SkinModule& module : skin.modules)
+        ids.push_back(module.id);
+    return ids;
+}
+
 TEST(ScanPresenter, TellsWhatIsInTheWay) {
     Desk desk;
     EXPECT_THAT(desk.scan.obstacle().toStdString(), testing::HasSubstr("skin is not connected"));
@@ -116,6 +123,46 @@ TEST(ScanPresenter, CancelledInAnyPhaseItLeavesNothingBehind) {
     desk.rig.setCameraLatency(80ms);
     ASSERT_TRUE(desk.scanHere()) << "and the next one goes through";
     expectSpotsNearTruth(desk, desk.session().measured().views.back());
+}
+
+TEST(ScanPresenter, WhatAKnockSpoiltIsLookedForAgain) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    const std::size_t pictures = desk.scan.picturesOfAScan();
+    when(desk, Phase::Streaming, pictures / 2, [&] {
+        EXPECT_TRUE(desk.scan.wanted().empty());
+        desk.rig.moveCamera(desk.rig.cameraPose() * makeIsometry(so3Exp({0.3 * kDegree, 0, 0}), Vector3d::Zero()));
+    });
+    std::size_t wanted = 0;
+    when(desk, Phase::Streaming, pictures + 1, [&] { wanted = desk.scan.wanted().size(); });
+    ASSERT_TRUE(desk.scanHere());
+    EXPECT_EQ(wanted, desk.session().measured().skin.modules.size());
+    EXPECT_TRUE(desk.scan.wanted().empty()) << "it is over";
+    const ScannedView& view = desk.session().measured().views.back();
+    EXPECT_EQ(view.frames.front().look, 0U);
+    EXPECT_EQ(view.frames.back().look, 1U);
+    EXPECT_EQ(view.pictures->size(), view.frames.size());
+    expectSpotsNearTruth(desk, view);
+    // Read from its files it is the same.
+    const auto again = decodeScan(view.frames, view.pictures, idsOf(desk.session().measured().skin), {});
+    ASSERT_TRUE(again);
+    ASSERT_EQ(again->view.decoded.found.size(), view.decoded.found.size());
+    for (std::size_t i = 0; i < view.decoded.found.size(); ++i)
+        EXPECT_EQ(again->view.decoded.found[i].pixel, view.decoded.found[i].pixel);
+}
+
+TEST(ScanPresenter, LooksOnceWhereThatIsAskedOrNothingIsOpen) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    ASSERT_TRUE(desk.scanHere());
+    EXPECT_EQ(desk.session().measured().views.back().frames.back().look, 0U) << "those not seen are out of sight";
+    desk.scan.setLooksAgain(false);
+    when(desk, Phase::Streaming, desk.scan.picturesOfAScan() / 2, [&] {
+        desk.rig.moveCamera(desk.rig.cameraPose() * makeIsometry(so3Exp({0.3 * kDegree, 0, 0}), Vector3d::Zero()));
+    });
+    ASSERT_TRUE(desk.scanHere());
+    EXPECT_EQ(desk.session().measured().views.back().frames.back().look, 0U);
+    EXPECT_TRUE(desk.session().measured().views.back().decoded.found.empty());
 }
 
 TEST(ScanPresenter, PausesAndGoesOn) {

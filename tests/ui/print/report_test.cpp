@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <QBuffer>
+#include <QImage>
 #include <cmath>
 
 namespace skincal {
@@ -37,8 +39,8 @@ BodyModel smallBody() {
 }
 
 TEST(Report, TellsWhatMakesACalibrationTraceable) {
-    const std::string html = reportHtml(smallBody(), {"26 November 2026", {}, {}, {}}).toStdString();
-    for (const char* text : {"26 November 2026", "1.2.3", "joint", "SHA-256 abc123", "usable", "1 of 2", "100.00",
+    const std::string html = reportHtml(smallBody(), {"26 November 2026"}).toStdString();
+    for (const char* text : {"26 November 2026", "1.2.3", "joint", "SHA-256", "abc123", "usable", "1 of 2", "100.00",
                              "-20.00", "750.00", "1.00", "no view shows it"})
         EXPECT_THAT(html, HasSubstr(text));
 }
@@ -47,19 +49,19 @@ TEST(Report, ListsAllThatIsMissingAndPraisesOnlyWhereNothingIs) {
     BodyModel body = smallBody();
     const char* praise = "Nothing is missing";
     body.quality.warnings.clear();
-    EXPECT_THAT(reportHtml(body, {"now", {}, {}, {}}).toStdString(), HasSubstr(praise));
-    const std::string html = reportHtml(body, {"now", {"patch 2 is seen in one view only"}, {}, {}}).toStdString();
+    EXPECT_THAT(reportHtml(body, {"now"}).toStdString(), HasSubstr(praise));
+    const std::string html = reportHtml(body, {"now", {"patch 2 is seen in one view only"}}).toStdString();
     EXPECT_THAT(html, HasSubstr("patch 2 is seen in one view only"));
     EXPECT_THAT(html, Not(HasSubstr(praise)));
     body.quality.missing = {"no view shows module 18"};
-    EXPECT_THAT(reportHtml(body, {"now", {}, {}, {}}).toStdString(),
+    EXPECT_THAT(reportHtml(body, {"now"}).toStdString(),
                 testing::AllOf(HasSubstr("no view shows module 18"), Not(HasSubstr(praise))));
 }
 
 TEST(Report, NamesTheMethodOnce) {
     BodyModel body = smallBody();
     body.generator.options = {{"method", "joint"}, {"misalignment", "2"}};
-    const QString html = reportHtml(body, {"now", {}, {}, {}});
+    const QString html = reportHtml(body, {"now"});
     EXPECT_EQ(html.count("joint"), 1);
     EXPECT_THAT(html.toStdString(), HasSubstr("misalignment"));
 }
@@ -81,12 +83,12 @@ TEST(Report, TellsHowWellModulesAndPatchesAreKnown) {
     better.id = ModuleId{20};
     body.modules.push_back(better);
     body.modules.push_back(worse);
-    const std::string html = reportHtml(body, {"now", {}, {}, {}}).toStdString();
+    const std::string html = reportHtml(body, {"now"}).toStdString();
     EXPECT_THAT(html, HasSubstr("<td>2.00</td><td>0.50</td>")) << "a module's";
     EXPECT_THAT(html, HasSubstr("<td>1.00 (2.00)</td>")) << "a patch's";
     patch.id = PatchId{1};
     body.patches = {patch};
-    EXPECT_THAT(reportHtml(body, {"now", {}, {}, {}}).toStdString(), HasSubstr("<td>–</td><td>–</td><td>placed</td>"));
+    EXPECT_THAT(reportHtml(body, {"now"}).toStdString(), HasSubstr("<td>–</td><td>–</td><td>placed</td>"));
 }
 
 TEST(Report, SaysWhereTheIntrinsicsComeFrom) {
@@ -96,15 +98,71 @@ TEST(Report, SaysWhereTheIntrinsicsComeFrom) {
     camera.fx = 1100.25;
     camera.distortion = {0.1, -0.05, 0, 0, 0};
     const BodyModel body = smallBody();
-    EXPECT_THAT(reportHtml(body, {"now", {}, {}, {}}).toStdString(), Not(HasSubstr("Intrinsics")));
+    EXPECT_THAT(reportHtml(body, {"now"}).toStdString(), Not(HasSubstr("Intrinsics")));
     EXPECT_THAT(reportHtml(body, {"now", {}, camera, {}}).toStdString(), HasSubstr("unknown origin"));
     EXPECT_THAT(reportHtml(body, {"now", {}, camera, "read from <cam>.yaml"}).toStdString(),
                 testing::AllOf(HasSubstr("1280 × 720"), HasSubstr("1100.25"), HasSubstr("-0.05"),
                                HasSubstr("read from &lt;cam&gt;.yaml")));
 }
 
+ReportFacts factsWithData(std::size_t detections) {
+    ReportFacts facts{"now"};
+    facts.skinDevice = "Port <ttyUSB0>";
+    facts.cameraDevice = "Webcam C920";
+    facts.poses = 6;
+    facts.decisions = {"Pose 3 was dropped", "Module 17 in view0 was rejected: a <reflection>"};
+    facts.uniqueIds[ModuleId{17}] = "0011aabb";
+    ReportedScan scan{"view0", 28, {}};
+    QImage crops(75, 25, QImage::Format_Grayscale8);
+    crops.fill(Qt::gray);
+    QByteArray png;
+    QBuffer buffer(&png);
+    buffer.open(QIODevice::WriteOnly);
+    crops.save(&buffer, "PNG");
+    for (std::size_t i = 0; i < detections; ++i)
+        scan.detections.push_back({ModuleId{static_cast<std::uint32_t>(17 + i)},
+                                   {640.25, 360.5},
+                                   0.031,
+                                   WordReading{"0110", "01.0", 41.26, 312},
+                                   png,
+                                   i == 0});
+    facts.scans = {scan};
+    return facts;
+}
+
+TEST(Report, ShowsWhatDecidedAndWhoDecidedOtherwise) {
+    BodyModel body = smallBody();
+    BodyView view;
+    view.name = "view0";
+    BodyObservation used;
+    used.module = ModuleId{18};
+    used.residual = Vector2d(0.3, 0.4);
+    BodyObservation aside = used;
+    aside.module = ModuleId{19};
+    aside.verdict = ObservationVerdict::Rejected;
+    aside.reason = "9 px from where the body has it";
+    view.observations = {used, aside};
+    body.views = {view};
+    const std::string html = reportHtml(body, factsWithData(3)).toStdString();
+    for (const char* text :
+         {"Port &lt;ttyUSB0&gt;", "Webcam C920", "Pose 3 was dropped", "a &lt;reflection&gt;", "0011aabb",
+          "28 pictures", "640.25, 360.50", "0.031", "0110<br>01.0", "41.3", "312", "<td>rejected</td>",
+          "<td>0.500</td><td>used</td>", "9 px from where the body has it", "<img src=\"data:image/png;base64,"})
+        EXPECT_THAT(html, HasSubstr(text));
+    const std::string without = reportHtml(body, {"now"}).toStdString();
+    for (const char* text : {"Decided by the operator", "Detections</h2>", "Unique id", "<img"})
+        EXPECT_THAT(without, Not(HasSubstr(text)));
+}
+
+TEST(Report, PagesHaveThePicturesOfSpots) {
+    const BodyModel body = smallBody();
+    const auto images = [](const QByteArray& pdf) { return pdf.count("/Subtype /Image"); };
+    EXPECT_EQ(images(reportPdf(body, {"now"})), 0);
+    EXPECT_GT(images(reportPdf(body, factsWithData(2))), 0);
+}
+
 TEST(Report, TextFromFilesIsNoMarkup) {
-    const std::string html = reportHtml(smallBody(), {"now", {}, {}, {}}).toStdString();
+    const std::string html = reportHtml(smallBody(), {"now"}).toStdString();
     EXPECT_THAT(html, HasSubstr("pose 3 &amp; more"));
     EXPECT_THAT(html, HasSubstr("hex&lt;script&gt;"));
     EXPECT_THAT(html, Not(HasSubstr("<script>")));
@@ -113,10 +171,10 @@ TEST(Report, TextFromFilesIsNoMarkup) {
 TEST(Report, OfManyModulesHasManyPages) {
     BodyModel body = smallBody();
     const auto pages = [](const QByteArray& pdf) { return pdf.count("/Type /Page\n"); };
-    const auto few = pages(reportPdf(body, {"now", {}, {}, {}}));
+    const auto few = pages(reportPdf(body, {"now"}));
     EXPECT_GE(few, 1);
     body.modules.resize(600, body.modules.front());
-    EXPECT_GT(pages(reportPdf(body, {"now", {}, {}, {}})), few + 4);
+    EXPECT_GT(pages(reportPdf(body, {"now"})), few + 4);
 }
 
 }  // namespace

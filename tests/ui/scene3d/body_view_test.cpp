@@ -250,5 +250,50 @@ TEST(BodyView, TakesValuesOfAnyNumber) {
     EXPECT_THROW(view->setGuideUp(Vector3d::Zero()), std::logic_error);
 }
 
+TEST(BodyView, BringsTheCamerasNextPlaceIntoViewUnlessTheUserLooksElsewhere) {
+    const auto view = shownView();
+    view->setBody(shared(sampleBody()));
+    Isometry3d T_r_v = *sampleBody().views[0].T_body_camera;
+    T_r_v.translation() += Vector3d(0.5, 0.3, 0);
+    const auto isInView = [&] {
+        const auto at = view->positionOf(T_r_v.translation());
+        return at && view->rect().contains(at->toPoint());
+    };
+    EXPECT_FALSE(isInView());
+    const Vector3d before = eyeOf(*view);
+    view->setGuideCamera(T_r_v);
+    EXPECT_TRUE(isInView());
+    const Vector3d with = eyeOf(*view);
+    view->setGuideCamera(T_r_v);
+    EXPECT_EQ(eyeOf(*view), with) << "the same again moves nothing";
+    view->setGuideCamera(std::nullopt);
+    EXPECT_LT((eyeOf(*view) - before).norm(), 1e-6);
+    press(*view, Qt::Key_Plus);
+    const Vector3d users = eyeOf(*view);
+    view->setGuideCamera(T_r_v);
+    EXPECT_EQ(eyeOf(*view), users);
+}
+
+TEST(BodyView, ContactsStandOnTheSkinUntilTheyAreTakenAway) {
+    const auto view = shownView();
+    view->setBody(shared(sampleBody()));
+    view->setCamerasShown(false);
+    const QImage untouched = view->grabPicture();
+    view->setContacts(contactsOn(*view, {3, 12}));
+    EXPECT_EQ(view->contacts().size(), 2U);
+    const QImage touched = view->grabPicture();
+    int other = 0;
+    for (int y = 0; y < touched.height(); ++y) {
+        for (int x = 0; x < touched.width(); ++x)
+            other += touched.pixel(x, y) != untouched.pixel(x, y) ? 1 : 0;
+    }
+    EXPECT_GT(other, 100);
+    view->setContacts({});
+    EXPECT_EQ(view->grabPicture(), untouched);
+    view->setContacts(contactsOn(*view, {3}));
+    view->setBody(shared(sampleBodyWithoutPictures()));
+    EXPECT_TRUE(view->contacts().empty()) << "places of another body";
+}
+
 }  // namespace
 }  // namespace skincal

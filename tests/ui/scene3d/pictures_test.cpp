@@ -45,6 +45,35 @@ TEST(Pictures, OfGuidesAndSelection) {
     EXPECT_TRUE(matchesBaseline(view->grabPicture(), "guides-dark"));
 }
 
+TEST(Pictures, OfTouchWithContacts) {
+    const auto view = shownView();
+    view->setBody(shared(sampleBody()));
+    view->setCamerasShown(false);
+    view->setColourMode(ColourMode::Values);
+    std::vector<float> values;
+    std::vector<float> heights;
+    for (std::size_t u = 0; u < view->body()->modules.size(); ++u) {
+        values.push_back(static_cast<float>(u % 5) / 4);
+        heights.push_back(0.004F * values.back());
+    }
+    view->setCellValues(values);
+    view->setCellHeights(heights);
+    view->setContacts(contactsOn(*view, {3, 12}));
+    EXPECT_TRUE(matchesBaseline(view->grabPicture(), "touch-dark"));
+}
+
+TEST(Pictures, OfDeviationsFromAMesh) {
+    const auto view = shownView();
+    view->setDark(false);
+    view->setBody(shared(sampleBody()));
+    std::map<ModuleId, double> deviations;
+    for (const BodyModule& module : view->body()->modules)
+        deviations[module.id] = 1e-3 * (static_cast<double>(module.id.value % 7) - 3);
+    view->setDeviations(std::move(deviations));
+    view->setColourMode(ColourMode::Deviation);
+    EXPECT_TRUE(matchesBaseline(view->grabPicture(), "deviations-light"));
+}
+
 TEST(Pictures, OfNothing) {
     const auto view = shownView();
     EXPECT_TRUE(matchesBaseline(view->grabPicture(), "empty-dark"));

@@ -26,4 +26,16 @@ inline std::unique_ptr<BodyViewWidget> shownView() {
     return view;
 }
 
+/// Something presses on each of these modules, the first the hardest.
+inline std::vector<ContactMark> contactsOn(const BodyViewWidget& view, std::initializer_list<std::uint32_t> modules) {
+    std::vector<ContactMark> contacts;
+    double length = 0.35 * view.layoutShown().radius;
+    for (const std::uint32_t module : modules) {
+        const Isometry3d& T_s_u = view.layoutShown().find(ModuleId(module))->T_s_u;
+        contacts.push_back({T_s_u.translation(), T_s_u.linear().col(2), length});
+        length *= 0.7;
+    }
+    return contacts;
+}
+
 }  // namespace skincal

@@ -199,6 +199,18 @@ std::vector<Defect> defects() {
             },
             "views[0].frames[0].lit[0].colour[1]", "from 0 to 1"),
         inJson(
+            "negative_look", [](json& j) { j["views"][0]["frames"][0]["look"] = -1; }, "views[0].frames[0].look",
+            "from 0 to 1000"),
+        inJson(
+            "looks_out_of_order",
+            [](json& j) {
+                auto& frames = j["views"][0]["frames"];
+                frames.push_back(frames[0]);
+                frames[0]["look"] = 2;
+                frames[1]["look"] = 1;
+            },
+            "views[0].frames[1].look", "2 or more"),
+        inJson(
             "absolute_path", [](json& j) { j["views"][0]["frames"][0]["file"] = "/etc/passwd"; },
             "views[0].frames[0].file", "inside the recording"),
         inJson(

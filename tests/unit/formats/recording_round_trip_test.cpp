@@ -39,7 +39,7 @@ Recording randomRecording(std::uint64_t seed) {
     RecordedView frames{"pictures", {}, {}};
     frames.frames.push_back({"views/0.png", {}, 0.0});
     frames.frames.push_back(
-        {"views/1.png", {{ModuleId(1), std::nullopt}, {ModuleId(4), std::array<int, 3>{1, 0, 1}}}, {}});
+        {"views/1.png", {{ModuleId(1), std::nullopt}, {ModuleId(4), std::array<int, 3>{1, 0, 1}}}, {}, 3});
     RecordedView detections{"detections", {}, {}};
     for (const SkinModule& m : r.skin.modules)
         detections.detections.push_back(
@@ -81,6 +81,8 @@ TEST(RecordingRoundTrip, KeepsEverythingToTheLastBit) {
         EXPECT_EQ(b->camera.distortion, a.camera.distortion);
         EXPECT_EQ(b->views[0].frames[1].lit[1].colour, a.views[0].frames[1].lit[1].colour);
         EXPECT_EQ(b->views[0].frames[0].time_s, 0.0);
+        EXPECT_EQ(b->views[0].frames[0].look, 0U);
+        EXPECT_EQ(b->views[0].frames[1].look, 3U);
         for (std::size_t d = 0; d < a.views[1].detections.size(); ++d)
             EXPECT_EQ(b->views[1].detections[d].pixel, a.views[1].detections[d].pixel);
         EXPECT_EQ(b->decisions[0].reason, "a lamp");

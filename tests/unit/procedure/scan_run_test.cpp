@@ -61,6 +61,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
     const std::vector<Effect> stops{StopTimer{}, LightsOff{}, Discard{}};
     const ScanRow table[] = {
         {Idle, Start{3}, Lighting, {Light{0}, kLightTimer}},
+        {Idle, Extend{2}, kNothing, none},
         {Idle, LightCommanded{8}, kNothing, none},
         {Idle, LightShown{7, 1s}, kNothing, none},
         {Idle, PictureTaken{2s}, kNothing, none},
@@ -72,6 +73,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Idle, TimedOut{}, kNothing, none},
 
         {Timing, Start{3}, kNothing, none},
+        {Timing, Extend{2}, kNothing, none},
         {Timing, LightCommanded{8}, Timing, none},
         {Timing, LightShown{7, 1s}, Timing, {StartTimer{1000ms}}},
         {Timing, PictureTaken{2s}, Timing, none},
@@ -83,6 +85,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Timing, TimedOut{}, Timing, {Light{0}, kLightTimer}},
 
         {Streaming, Start{3}, kNothing, none},
+        {Streaming, Extend{2}, kNothing, none},
         {Streaming, LightCommanded{8}, Streaming, none},
         {Streaming, LightShown{7, 897ms}, Streaming, {StartTimer{1000ms}, Light{2, 978ms}, StartTimer{581ms}}},
         {Streaming, PictureTaken{2s}, Streaming, none},
@@ -94,6 +97,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Streaming, TimedOut{}, Streaming, {StartTimer{1000ms}}},
 
         {Lighting, Start{3}, kNothing, none},
+        {Lighting, Extend{2}, kNothing, none},
         {Lighting, LightCommanded{8}, Lighting, none},
         {Lighting, LightShown{7, 1s}, Settling, {kPictureTimer}},
         {Lighting, PictureTaken{2s}, kNothing, none},
@@ -105,6 +109,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Lighting, TimedOut{}, Lighting, {Light{1}, kLightTimer}},
 
         {Settling, Start{3}, kNothing, none},
+        {Settling, Extend{2}, kNothing, none},
         {Settling, LightCommanded{8}, kNothing, none},
         {Settling, LightShown{7, 1s}, kNothing, none},
         {Settling, PictureTaken{2s}, Lighting, {KeepPicture{1}, Light{2}, kLightTimer}},
@@ -116,6 +121,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Settling, TimedOut{}, Lighting, {Light{1}, kLightTimer}},
 
         {Paused, Start{3}, kNothing, none},
+        {Paused, Extend{2}, kNothing, none},
         {Paused, LightCommanded{8}, kNothing, none},
         {Paused, LightShown{7, 1s}, kNothing, none},
         {Paused, PictureTaken{2s}, kNothing, none},
@@ -127,6 +133,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Paused, TimedOut{}, kNothing, none},
 
         {Decoding, Start{3}, kNothing, none},
+        {Decoding, Extend{2}, Lighting, {Light{3}, kLightTimer}},
         {Decoding, LightCommanded{8}, kNothing, none},
         {Decoding, LightShown{7, 1s}, kNothing, none},
         {Decoding, PictureTaken{2s}, kNothing, none},
@@ -138,6 +145,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Decoding, TimedOut{}, kNothing, none},
 
         {Done, Start{3}, Lighting, {Light{0}, kLightTimer}},
+        {Done, Extend{2}, kNothing, none},
         {Done, LightCommanded{8}, kNothing, none},
         {Done, LightShown{7, 1s}, kNothing, none},
         {Done, PictureTaken{2s}, kNothing, none},
@@ -149,6 +157,7 @@ TEST(ScanRun, DoesWhatTheTableSays) {
         {Done, TimedOut{}, kNothing, none},
 
         {Broken, Start{3}, Lighting, {Light{0}, kLightTimer}},
+        {Broken, Extend{2}, kNothing, none},
         {Broken, LightCommanded{8}, kNothing, none},
         {Broken, LightShown{7, 1s}, kNothing, none},
         {Broken, PictureTaken{2s}, kNothing, none},

@@ -89,6 +89,36 @@ TEST(SessionStorage, ReadsWhatItWroteAndWritesNoPictureTwice) {
     EXPECT_EQ(filesIn(copy.path()), files);
 }
 
+TEST(SessionStorage, DigestsAreThoseOfTheFilesThatAreWritten) {
+    OpenedRecording scanned = scannedRecording(1);
+    PictureDigests known;
+    for (const bool isDropped : {false, true}) {
+        if (isDropped)
+            scanned.decisions.droppedViews.insert(scanned.measured.views.front().name);
+        const TemporaryDirectory directory;
+        ASSERT_TRUE(writeSession(scanned.measured, scanned.decisions, directory.path()));
+        const auto written = readRecording(directory.path());
+        ASSERT_TRUE(written);
+        const auto digests = digestSession(scanned.measured, scanned.decisions, known);
+        ASSERT_TRUE(digests);
+        EXPECT_EQ(*digests, digestRecording(directory.path(), *written).value());
+    }
+    EXPECT_EQ(known.size(), scanned.measured.views.size()) << "the pictures of each are encoded once";
+    const auto before = digestSession(scanned.measured, scanned.decisions, known);
+    scanned.measured.gravity.front().acceleration.x() += 1e-9;
+    EXPECT_NE(digestSession(scanned.measured, scanned.decisions, known), before) << "whatever changes shows";
+}
+
+TEST(SessionStorage, NothingIsDigestedOfWhatCantBeWrittenNorWhenCancelled) {
+    OpenedRecording scanned = scannedRecording(1);
+    PictureDigests known;
+    RunContext context;
+    context.isCancelled = [] { return true; };
+    EXPECT_FALSE(digestSession(scanned.measured, scanned.decisions, known, context));
+    scanned.decisions.camera.reset();
+    EXPECT_FALSE(digestSession(scanned.measured, scanned.decisions, known));
+}
+
 TEST(SessionStorage, AViewThatWasScannedAgainIsWrittenAnew) {
     OpenedRecording scanned = scannedRecording(1);
     const TemporaryDirectory directory;

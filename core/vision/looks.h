@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/vision/detection.h"
+#include "core/vision/frame.h"
+
+namespace skincal {
+
+/// Where the looks of a view begin: what a first scan of all modules leaves undecided is looked for again, by a scan of
+/// its own (FurtherLooks), whose pictures follow those of the first. The first of the result is 0.
+[[nodiscard]] std::vector<std::size_t> beginningsOfLooks(std::span<const FrameInfo> frames);
+
+[[nodiscard]] std::vector<ModuleId> modulesLitIn(std::span<const FrameInfo> look);
+
+struct LookOptions {
+    double maxMotion_px = 1;  ///< of the camera between two looks; beyond it the later one counts for nothing
+    double sameSpot_px = 2;   ///< two LEDs can't be nearer than this
+
+    [[nodiscard]] bool validate() const { return maxMotion_px > 0 && sameSpot_px > 0; }
+};
+
+/// Adds what a further look found, in the pixels of the first: modules that both found tell how the camera moved in
+/// between (their median), which is taken off and, by half, part of the new standard deviations. What was found before
+/// stays. A module that shines where another was found is ambiguous. Modules that it does not find either keep their
+/// reason, unless the further look has one and the earlier had not.
+/// @param further  of some of the view's modules
+void addLook(ViewDetections& view, const ViewDetections& further, const LookOptions& options = {});
+
+/// Puts what is found, and what is not, into the order of the modules.
+void sortAs(std::span<const ModuleId> modules, ViewDetections& view);
+
+}  // namespace skincal

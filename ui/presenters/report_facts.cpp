@@ -1,0 +1,127 @@
+#include "ui/presenters/report_facts.h"
+
+#include <QBuffer>
+#include <QCoreApplication>
+#include <QImage>
+#include <algorithm>
+#include <opencv2/core.hpp>
+
+#include "ui/presenters/scan_job.h"
+
+namespace skincal {
+namespace {
+
+class ReportWords {
+    Q_DECLARE_TR_FUNCTIONS(ReportWords)
+};
+
+constexpr int kCropRadius = 12;  // px
+
+/// Lit, dark and the difference side by side.
+QByteArray stripOf(const SpotEvidence& evidence) {
+    const int gap = 2;
+    const int width = evidence.lit.cols;
+    QImage strip(3 * width + 2 * gap, evidence.lit.rows, QImage::Format_Grayscale8);
+    strip.fill(Qt::white);
+    int x = 0;
+    for (const cv::Mat* crop : {&evidence.lit, &evidence.dark, &evidence.difference}) {
+        cv::Mat into(strip.height(), width, CV_8U, strip.bits() + x, static_cast<std::size_t>(strip.bytesPerLine()));
+        crop->copyTo(into);
+        x += width + gap;
+    }
+    QByteArray png;
+    QBuffer buffer(&png);
+    buffer.open(QIODevice::WriteOnly);
+    strip.save(&buffer, "PNG");
+    return png;
+}
+
+ReportedScan scanOf(const ScannedView& view, const Decisions& decisions) {
+    ReportedScan scan;
+    scan.view = view.name;
+    scan.pictures = view.frames.size();
+    for (std::size_t i = 0; i < view.decoded.found.size(); ++i) {
+        const LedDetection& found = view.decoded.found[i];
+        ReportedDetection detection{found.module, found.pixel, found.sigma_px, {}, {}, false};
+        if (i < view.decoded.readings.size())
+            detection.reading = view.decoded.readings[i];
+        const auto decided = decisions.detections.find({view.name, found.module});
+        detection.isRejected = decided != decisions.detections.end() && decided->second.verdict == "rejected";
+        scan.detections.push_back(std::move(detection));
+    }
+    std::sort(scan.detections.begin(), scan.detections.end(),
+              [](const ReportedDetection& a, const ReportedDetection& b) { return a.module < b.module; });
+    return scan;
+}
+
+/// In the order of their leads, the least first.
+std::vector<std::pair<std::size_t, std::size_t>> byLead(const std::vector<ReportedScan>& scans) {
+    std::vector<std::pair<std::size_t, std::size_t>> order;
+    for (std::size_t v = 0; v < scans.size(); ++v) {
+        for (std::size_t i = 0; i < scans[v].detections.size(); ++i)
+            order.emplace_back(v, i);
+    }
+    const auto lead = [&](const std::pair<std::size_t, std::size_t>& at) {
+        const auto& detection = scans[at.first].detections[at.second];
+        // What somebody rejected is what will be asked about.
+        return detection.isRejected ? -1 : detection.reading ? detection.reading->margin : 0;
+    };
+    std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return lead(a) < lead(b); });
+    return order;
+}
+
+std::vector<QString> sentencesOf(const Decisions& decisions) {
+    std::vector<QString> sentences;
+    for (const auto& [link, kind] : decisions.links) {
+        const QString ends = ReportWords::tr("Link of module %1, port %2, and module %3, port %4: ")
+                                 .arg(link.a.value)
+                                 .arg(link.a_port)
+                                 .arg(link.b.value)
+                                 .arg(link.b_port);
+        sentences.push_back(ends +
+                            (kind == LinkKind::Adjacent ? ReportWords::tr("neighbours") : ReportWords::tr("a cable")));
+    }
+    for (const int pose : decisions.droppedPoses)
+        sentences.push_back(ReportWords::tr("Pose %1 was dropped").arg(pose));
+    for (const std::string& view : decisions.droppedViews)
+        sentences.push_back(ReportWords::tr("%1 was dropped").arg(QString::fromStdString(view)));
+    for (const auto& [key, decision] : decisions.detections) {
+        const QString what = decision.verdict == "rejected" ? ReportWords::tr("Module %1 in %2 was rejected")
+                                                            : ReportWords::tr("Module %1 in %2 was accepted");
+        const QString said = what.arg(key.module.value).arg(QString::fromStdString(key.view));
+        sentences.push_back(decision.reason.empty()
+                                ? said
+                                : ReportWords::tr("%1: %2").arg(said, QString::fromStdString(decision.reason)));
+    }
+    return sentences;
+}
+
+}  // namespace
+
+void addData(ReportFacts& facts, const Measured& measured, const Decisions& decisions, std::size_t mostCrops,
+             const RunContext& context) {
+    facts.poses = posesOf(measured, decisions).size();
+    facts.decisions = sentencesOf(decisions);
+    for (const SkinModule& module : measured.skin.modules) {
+        if (!module.uniqueId.empty())
+            facts.uniqueIds[module.id] = module.uniqueId;
+    }
+    std::vector<const ScannedView*> views;
+    for (const ScannedView& view : measured.views) {
+        if (decisions.droppedViews.contains(view.name))
+            continue;
+        views.push_back(&view);
+        facts.scans.push_back(scanOf(view, decisions));
+    }
+    for (const auto& [v, i] : byLead(facts.scans)) {
+        if (mostCrops == 0 || context.isCancelled())
+            return;
+        ReportedDetection& detection = facts.scans[v].detections[i];
+        if (const auto evidence = evidenceOf(*views[v], detection.module, detection.pixel, kCropRadius)) {
+            detection.crops = stripOf(*evidence);
+            --mostCrops;
+        }
+    }
+}
+
+}  // namespace skincal

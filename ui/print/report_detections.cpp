@@ -1,0 +1,90 @@
+#include "ui/print/report_detections.h"
+
+#include <QCoreApplication>
+
+#include "ui/print/html.h"
+
+namespace skincal {
+namespace {
+
+using namespace html;
+
+QString tr(const char* text, int count = -1) {
+    return QCoreApplication::translate("Report", text, nullptr, count);
+}
+
+/// What became of detections in the body, by module.
+std::map<ModuleId, const BodyObservation*> observationsOf(const BodyModel& body, const std::string& view) {
+    std::map<ModuleId, const BodyObservation*> observations;
+    for (const BodyView& solved : body.views) {
+        for (const BodyObservation& observation : solved.observations) {
+            if (solved.name == view)
+                observations[observation.module] = &observation;
+        }
+    }
+    return observations;
+}
+
+QString picture(const QByteArray& png) {
+    return png.isEmpty()
+               ? QString()
+               : QStringLiteral("<img src=\"data:image/png;base64,%1\">").arg(QString::fromLatin1(png.toBase64()));
+}
+
+/// Where one LED was lit after the other, words are as long as there are modules, and say next to nothing.
+QString wordsOf(const WordReading& reading) {
+    constexpr std::size_t kLongest = 80;
+    return reading.sent.size() > kLongest
+               ? tr("–")
+               : QStringLiteral("<code>%1<br>%2</code>").arg(escaped(reading.sent), escaped(reading.received));
+}
+
+QString detections(const ReportedScan& scan, const BodyModel& body) {
+    const auto observations = observationsOf(body, scan.view);
+    QString rows;
+    for (const ReportedDetection& detection : scan.detections) {
+        QString verdict = detection.isRejected ? tr("rejected") : tr("not used");
+        QString residual = tr("–");
+        if (const auto found = observations.find(detection.module); found != observations.end()) {
+            const BodyObservation& observation = *found->second;
+            if (observation.verdict == ObservationVerdict::Used)
+                verdict = tr("used");
+            else if (!observation.reason.empty())
+                verdict = escaped(observation.reason);
+            if (observation.residual)
+                residual = QString::number(observation.residual->norm(), 'f', 3);
+        }
+        QStringList cells{QString::number(detection.module.value),
+                          tr("%1, %2").arg(detection.pixel.x(), 0, 'f', 2).arg(detection.pixel.y(), 0, 'f', 2),
+                          QString::number(detection.sigma_px, 'f', 3), residual, verdict};
+        if (const auto& reading = detection.reading) {
+            cells << wordsOf(*reading) << QString::number(reading->snr, 'f', 1)
+                  << QString::number(reading->margin, 'f', 0);
+        } else {
+            cells << tr("–") << tr("–") << tr("–");
+        }
+        cells << picture(detection.crops);
+        rows += row(cells);
+    }
+    return QStringLiteral("<h3>%1</h3>\n")
+               .arg(tr("%1: %n pictures", static_cast<int>(scan.pictures)).arg(escaped(scan.view))) +
+           table({tr("Module"), tr("Pixel"), tr("σ, px"), tr("Residual, px"), tr("Verdict"), tr("Word sent, received"),
+                  tr("SNR"), tr("Lead"), tr("Lit, dark, difference")},
+                 rows);
+}
+
+}  // namespace
+
+QString detectionsHtml(const BodyModel& body, const std::vector<ReportedScan>& scans) {
+    QString html = heading(tr("Detections"));
+    html +=
+        QStringLiteral("<p>%1</p>\n")
+            .arg(tr("Every LED blinks a word of its own, 1 lit and 0 dark, picture by picture; a point stands where "
+                    "something disturbed it. SNR: light over noise in one picture. Lead: over whatever else the "
+                    "spot could be, −2 log likelihood. Spots of which the lead is least are shown."));
+    for (const ReportedScan& scan : scans)
+        html += detections(scan, body);
+    return html;
+}
+
+}  // namespace skincal

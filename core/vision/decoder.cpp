@@ -30,15 +30,19 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
         const auto spots = std::equal_range(sightings.begin(), sightings.end(), Sighting{u, {}},
                                             [](const Sighting& a, const Sighting& b) { return a.module < b.module; });
         if (!scan.codebook.blinks(u)) {
-            verdicts.note(u, DetectionVerdict::NotFound,
+            verdicts.note(u, DetectionVerdict::NotFound, Undetected::Cause::NeverBlinked,
                           scan.codebook.lit[u].empty() ? "its LED was never lit"
                                                        : "its LED was never dark, or only like a drift");
         } else if (sharing[scan.codebook.representative[u]] > 1) {
-            verdicts.note(u, DetectionVerdict::Ambiguous,
+            verdicts.note(u, DetectionVerdict::Ambiguous, Undetected::Cause::Alike,
                           fmt::format("lit in the same frames as {} other modules",
                                       sharing[scan.codebook.representative[u]] - 1));
         } else if (spots.first != spots.second && spoilt) {
-            verdicts.replace(u, {{}, DetectionVerdict::NotFound, "the camera moved while its word was shown"});
+            verdicts.replace(u, {{},
+                                 DetectionVerdict::NotFound,
+                                 "the camera moved while its word was shown",
+                                 {},
+                                 Undetected::Cause::CameraMoved});
         } else if (spots.first != spots.second) {
             const std::vector<Sighting> distinct = distinctSpots({spots.first, spots.second}, options);
             if (distinct.size() == 1) {

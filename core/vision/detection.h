@@ -28,12 +28,25 @@ struct SpotChoice {
 
 /// A module that the decoder did not accept, and why ("two spots blink its word", "no spot above the noise", …).
 struct Undetected {
+    /// The reason in a word, for whoever sorts by it.
+    enum class Cause {
+        OutOfSight,    ///< nothing in the picture blinks its word
+        TooWeak,       ///< something may blink its word, but is too faint to be sure
+        Reflected,     ///< several spots blink its word
+        Alike,         ///< the word of another module fits as well, or is the same
+        NotAnLed,      ///< what blinks its word is no round spot of its own: stray light, the light of others
+        TooBright,     ///< its spot is clipped, and its centre can't be told
+        NeverBlinked,  ///< it was not lit so that it could be told from others or from the room
+        CameraMoved,   ///< while its word was shown
+        Rejected,      ///< by the operator
+    };
     ModuleId module;
     DetectionVerdict verdict = DetectionVerdict::NotFound;
     std::string reason;
     /// Where several spots blink its word alike: all of them, brightest first, at least two. The picture can't tell
     /// which is the LED; what is known of the body may (see settleSpots). Empty where there is nothing to choose from.
     std::vector<SpotChoice> spots{};
+    Cause cause = Cause::OutOfSight;
 };
 
 /// What made a spot the LED of a module: the word that it was sent, against what was seen.

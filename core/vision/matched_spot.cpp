@@ -49,13 +49,14 @@ std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, st
             case SeriesVerdict::Ambiguous:
                 for (const std::size_t word : match.words) {
                     verdicts.note(word, DetectionVerdict::Ambiguous,
+                                  match.runnerUp ? Undetected::Cause::Alike : Undetected::Cause::TooWeak,
                                   match.runnerUp ? fmt::format("a spot fits its word no better than that of module {}",
                                                                modules[*match.runnerUp].value)
                                                  : std::string("a spot blinks its word too faintly to be sure"));
                 }
                 break;
             case SeriesVerdict::Unlike:
-                verdicts.note(match.words.front(), DetectionVerdict::NotFound,
+                verdicts.note(match.words.front(), DetectionVerdict::NotFound, Undetected::Cause::NotAnLed,
                               "a spot blinks somewhat like its word, but with other light in it");
                 break;
             case SeriesVerdict::Dark:

@@ -19,8 +19,15 @@
 namespace skincal {
 namespace {
 
+using Cause = Undetected::Cause;
+
+struct Miss {
+    Cause cause = Cause::OutOfSight;
+    std::string reason;
+};
+
 /// Pixel, or why there is none.
-using Outcome = tl::expected<Vector2d, std::string>;
+using Outcome = tl::expected<Vector2d, Miss>;
 
 cv::Mat blurred(const cv::Mat& foreground, const cv::Mat& background, const PaperDetectorOptions& options) {
     cv::Mat difference;
@@ -79,9 +86,9 @@ std::vector<cv::KeyPoint> blobs(const cv::Mat& overlay, const PaperDetectorOptio
 
 Outcome onlyBlob(const std::vector<cv::KeyPoint>& found, const PaperDetectorOptions& options, std::string_view which) {
     if (found.empty())
-        return tl::unexpected(fmt::format("no blob{}", which));
+        return tl::unexpected(Miss{Cause::OutOfSight, fmt::format("no blob{}", which)});
     if (found.size() > options.maxBlobs)
-        return tl::unexpected(fmt::format("{} blobs{} instead of one", found.size(), which));
+        return tl::unexpected(Miss{Cause::Reflected, fmt::format("{} blobs{} instead of one", found.size(), which)});
     return Vector2d(static_cast<double>(found[0].pt.x), static_cast<double>(found[0].pt.y));
 }
 
@@ -126,7 +133,7 @@ class Detector {
         if (pairs.size() > static_cast<std::size_t>(options_.binaryImages))
             pairs.resize(static_cast<std::size_t>(options_.binaryImages));
         const auto none = [&](const char* why) {
-            return std::vector<Outcome>(group.lit.size(), tl::unexpected(std::string(why)));
+            return std::vector<Outcome>(group.lit.size(), tl::unexpected(Miss{Cause::NeverBlinked, why}));
         };
         if (pairs.empty())
             return none("the view has no background frame");
@@ -202,7 +209,8 @@ class Verdict {
         } else if (!outcome_ || (!*outcome_ && !contradicted_)) {
             outcome_ = outcome;
         } else if (*outcome_ && outcome && (**outcome_ - *outcome).norm() > 0.5 * options.blurSize) {
-            outcome_ = tl::unexpected(std::string("blobs of its colour at different places in different lit sets"));
+            outcome_ =
+                tl::unexpected(Miss{Cause::Reflected, "blobs of its colour at different places in different lit sets"});
             contradicted_ = true;
         }
     }
@@ -259,12 +267,16 @@ tl::expected<ViewDetections, ScanError> detectPaper(std::string name, std::span<
         if (outcome && *outcome)
             view.found.push_back({id, **outcome, options.sigma_px});
         else if (outcome)
-            view.undetected.push_back({id, DetectionVerdict::NotFound, outcome->error()});
+            view.undetected.push_back(
+                {id, DetectionVerdict::NotFound, outcome->error().reason, {}, outcome->error().cause});
         else
-            view.undetected.push_back({id, DetectionVerdict::NotFound,
+            view.undetected.push_back({id,
+                                       DetectionVerdict::NotFound,
                                        everLit.count(id) > 0 ? "lit only together with others: the paper's detector "
                                                                "needs it alone, or each LED in a colour of its own"
-                                                             : "its LED was never lit"});
+                                                             : "its LED was never lit",
+                                       {},
+                                       Cause::NeverBlinked});
     }
     return view;
 }

@@ -47,6 +47,17 @@ std::optional<std::size_t> breakOf(const std::vector<std::uint8_t>& used) {
     return std::nullopt;
 }
 
+Undetected::Cause causeOf(SpotFitError error) {
+    switch (error) {
+        case SpotFitError::NoLight:
+            return Undetected::Cause::TooWeak;
+        case SpotFitError::TooFewPixels:
+            return Undetected::Cause::TooBright;
+        default:
+            return Undetected::Cause::NotAnLed;
+    }
+}
+
 // One lens draws all LEDs alike, but for those that are nearer than it is focused on.
 void dropStrangeWidths(std::vector<Sighting>& sightings, Verdicts& verdicts) {
     constexpr std::size_t kFewest = 5;
@@ -62,8 +73,11 @@ void dropStrangeWidths(std::vector<Sighting>& sightings, Verdicts& verdicts) {
         const double away = std::abs(std::log(sighting.fit.width_px) - usual);
         const bool isStrange = away > std::log(kAlike) + kSigmas * sighting.fit.logWidthSigma;
         if (isStrange)
-            verdicts.replace(sighting.module,
-                             {{}, DetectionVerdict::NotFound, std::string(name(SpotFitError::WrongShape))});
+            verdicts.replace(sighting.module, {{},
+                                               DetectionVerdict::NotFound,
+                                               std::string(name(SpotFitError::WrongShape)),
+                                               {},
+                                               Undetected::Cause::NotAnLed});
         return isStrange;
     });
 }
@@ -79,7 +93,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             const std::size_t module = match.series.words[j];
             const auto& fit = match.fits[j];
             if (!fit) {
-                verdicts.note(module, DetectionVerdict::NotFound, std::string(name(fit.error())));
+                verdicts.note(module, DetectionVerdict::NotFound, causeOf(fit.error()), std::string(name(fit.error())));
                 continue;
             }
             // The skirt of a neighbour blinks the neighbour's word; its centre lies elsewhere. Where two LEDs share one
@@ -87,7 +101,8 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             const bool shared = sharesSpot(match.series, j);
             const double allowed = shared ? options.windowRadius - 1.0 : options.maxShift_px;
             if ((fit->centre - Vector2d(match.spot.x, match.spot.y)).norm() > allowed) {
-                verdicts.note(module, DetectionVerdict::NotFound, "only stray light blinks its word");
+                verdicts.note(module, DetectionVerdict::NotFound, Undetected::Cause::NotAnLed,
+                              "only stray light blinks its word");
                 continue;
             }
             // Clipping hides a second LED from the series, which then looks like a disturbance, and makes light no
@@ -95,7 +110,8 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             if (shared ? blindNear(match.maps[j].window(), fit->centre, options.maxShift_px)
                        : fit->clipped && (hasMoreLight(scan, match) ||
                                           match.maps[j].strayShare(fit->centre, 3.5) > options.maxStrayShare)) {
-                verdicts.note(module, DetectionVerdict::Ambiguous, "its spot is clipped and has other light in it");
+                verdicts.note(module, DetectionVerdict::Ambiguous, Undetected::Cause::TooBright,
+                              "its spot is clipped and has other light in it");
                 continue;
             }
             sightings.push_back({module, *fit, whenSeen(scan.codebook, match.series, module), i});
@@ -133,7 +149,7 @@ std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, const Decod
 }
 
 Undetected undecided(const std::vector<Sighting>& spots, const DecoderOptions& options) {
-    Undetected result{{}, DetectionVerdict::Ambiguous, {}};
+    Undetected result{{}, DetectionVerdict::Ambiguous, {}, {}, Undetected::Cause::Reflected};
     result.reason = spots.size() == 2 ? fmt::format("two spots {:.0f} px apart blink its word",
                                                     (spots[1].fit.centre - spots[0].fit.centre).norm())
                                       : fmt::format("{} spots blink its word", spots.size());

@@ -14,11 +14,11 @@ class Verdicts {
     explicit Verdicts(std::size_t modules) : reasons_(modules) {}
 
     /// The first reason stays, but what nearly was a find says more than what never was.
-    void note(std::size_t module, DetectionVerdict verdict, std::string reason) {
+    void note(std::size_t module, DetectionVerdict verdict, Undetected::Cause cause, std::string reason) {
         auto& known = reasons_[module];
         const bool better = verdict == DetectionVerdict::Ambiguous && known.verdict == DetectionVerdict::NotFound;
         if (known.reason.empty() || better)
-            known = {{}, verdict, std::move(reason)};
+            known = {{}, verdict, std::move(reason), {}, cause};
     }
     /// Nothing says more than several finds.
     void replace(std::size_t module, Undetected with) { reasons_[module] = std::move(with); }

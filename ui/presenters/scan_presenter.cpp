@@ -157,6 +157,7 @@ void ScanPresenter::decodingFinished() {
         return;
     }
     ScanResult result = **std::move(outcome);
+    result.view.scan = {result.moved_px, watcher_.spots().size()};
     std::string name;
     if (replaced_ && workbench_.session().findView(*replaced_) != nullptr) {
         name = *replaced_;

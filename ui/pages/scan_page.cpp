@@ -91,7 +91,7 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     splitter->addWidget(table_);
     splitter->setStretchFactor(0, 1);
     splitter->setStretchFactor(1, 1);
-    splitter->setSizes({190, 360});
+    splitter->setSizes({210, 340});
     splitter->setChildrenCollapsible(false);
     body().addWidget(splitter, 1);
 

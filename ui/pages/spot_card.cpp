@@ -58,7 +58,7 @@ QString wordsOf(const DetectionRow& detection, const OverlayModule* byBody,
         text +=
             SpotCard::tr(" at (%1, %2) px").arg(detection.pixel->x(), 0, 'f', 2).arg(detection.pixel->y(), 0, 'f', 2);
         if (byBody != nullptr)
-            text += SpotCard::tr(", %1 px from the body's").arg((*detection.pixel - byBody->led).norm(), 0, 'f', 2);
+            text += SpotCard::tr(", %1 px off the body").arg((*detection.pixel - byBody->led).norm(), 0, 'f', 3);
     }
     if (evidence)
         text += SpotCard::tr(", %1 grey levels of light").arg(evidence->contrast, 0, 'f', 0);

@@ -10,18 +10,55 @@
 
 namespace skincal {
 
-/// Swaps two sets of decisions, back and forth.
-class DecideCommand : public QUndoCommand {
+/// Changes decisions, back and forth.
+class Session::DecideCommand : public QUndoCommand {
   public:
-    DecideCommand(Session& session, Decisions other, const QString& text)
-        : QUndoCommand(text), session_(session), other_(std::move(other)) {}
+    DecideCommand(Session& session, DecisionChange change, const QString& text)
+        : QUndoCommand(text), session_(session), change_(std::move(change)) {}
 
-    void undo() override { session_.swapDecisions(other_); }
-    void redo() override { session_.swapDecisions(other_); }
+    void undo() override { session_.swap(change_); }
+    void redo() override { session_.swap(change_); }
 
   private:
     Session& session_;
-    Decisions other_;
+    DecisionChange change_;
+};
+
+/// Something was measured, and is there already: undone, it does not count.
+class Session::MeasureCommand : public QUndoCommand {
+  public:
+    /// @param change  what makes it count no longer
+    MeasureCommand(Session& session, DecisionChange change, const QString& text)
+        : QUndoCommand(text), session_(session), change_(std::move(change)) {}
+
+    void undo() override { session_.swap(change_); }
+    void redo() override {
+        if (!std::exchange(isNew_, false))
+            session_.swap(change_);
+    }
+
+  private:
+    Session& session_;
+    DecisionChange change_;
+    bool isNew_ = true;
+};
+
+/// One scan of a view in the place of another, and what was decided about each.
+class Session::ReplaceCommand : public QUndoCommand {
+  public:
+    ReplaceCommand(Session& session, ScannedView other, DecisionChange change, const QString& text)
+        : QUndoCommand(text), session_(session), other_(std::move(other)), change_(std::move(change)) {}
+
+    void undo() override { redo(); }
+    void redo() override {
+        session_.swap(other_);
+        session_.swap(change_);
+    }
+
+  private:
+    Session& session_;
+    ScannedView other_;
+    DecisionChange change_;
 };
 
 Session::Session(QObject* parent) : QObject(parent), undoStack_(this), solver_(this) {
@@ -93,6 +130,10 @@ int Session::addPose(std::vector<GravityReading> readings) {
     }
     emit posesChanged();
     changed(true);
+    Decisions without = decisions_;
+    without.droppedPoses.insert(pose);
+    undoStack_.push(
+        new MeasureCommand(*this, DecisionChange(decisions_, without), tr("Capture pose %1").arg(pose + 1)));
     return pose;
 }
 
@@ -103,29 +144,34 @@ std::string Session::addView(ScannedView view) {
             break;
     }
     view.decoded.name = view.name;
+    const std::string name = view.name;
     measured_.views.push_back(std::move(view));
     emit viewsChanged();
     changed(true);
-    return measured_.views.back().name;
+    Decisions without = decisions_;
+    without.droppedViews.insert(name);
+    undoStack_.push(new MeasureCommand(*this, DecisionChange(decisions_, without),
+                                       tr("Scan %1").arg(QString::fromStdString(name))));
+    return name;
 }
 
 void Session::replaceView(ScannedView view) {
-    const auto existing = std::find_if(measured_.views.begin(), measured_.views.end(),
-                                       [&](const ScannedView& other) { return other.name == view.name; });
-    if (existing == measured_.views.end())
+    if (findView(view.name) == nullptr)
         return;
     view.decoded.name = view.name;
-    *existing = std::move(view);
-    emit viewsChanged();
-    changed(false);
+    Decisions after = decisions_;
+    after.droppedViews.erase(view.name);
+    std::erase_if(after.detections, [&](const auto& decision) { return decision.first.view == view.name; });
+    const QString text = tr("Scan %1 again").arg(QString::fromStdString(view.name));
+    undoStack_.push(new ReplaceCommand(*this, std::move(view), DecisionChange(decisions_, after), text));
 }
 
 void Session::decide(const QString& text, const std::function<void(Decisions&)>& change) {
-    Decisions other = decisions_;
-    change(other);
-    if (other == decisions_)
+    Decisions after = decisions_;
+    change(after);
+    if (after == decisions_)
         return;
-    undoStack_.push(new DecideCommand(*this, std::move(other), text));
+    undoStack_.push(new DecideCommand(*this, DecisionChange(decisions_, after), text));
 }
 
 void Session::load(OpenedRecording recording) {
@@ -213,10 +259,17 @@ void Session::setSaved(std::uint64_t revision) {
     emit modifiedChanged(isModified());
 }
 
-void Session::swapDecisions(Decisions& other) {
-    std::swap(decisions_, other);
+void Session::swap(DecisionChange& change) {
+    change.swap(decisions_);
     emit decisionsChanged();
     changed(false);
+}
+
+void Session::swap(ScannedView& view) {
+    const auto place = std::find_if(measured_.views.begin(), measured_.views.end(),
+                                    [&](const ScannedView& other) { return other.name == view.name; });
+    std::swap(*place, view);
+    emit viewsChanged();
 }
 
 void Session::changed(bool onlyGrew) {

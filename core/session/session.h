@@ -5,13 +5,15 @@
 #include <functional>
 #include <memory>
 
+#include "core/session/decision_change.h"
 #include "core/session/session_data.h"
 #include "core/session/solver.h"
 
 namespace skincal {
 
 /// The open document: what was measured, what the operator decided, and the newest body that follows from both. It
-/// lives on the GUI's thread; solving is done on another. What is measured can't be undone, what is decided can.
+/// lives on the GUI's thread; solving is done on another. What is decided can be undone. What is measured stays, but
+/// that a pose was captured or a view scanned can be undone, too: then it does not count, as if it were dropped.
 class Session : public QObject {
     Q_OBJECT
   public:
@@ -42,14 +44,17 @@ class Session : public QObject {
     /// The network as explored. Poses and views stay where it is the same skin (sameSkin); of another they are
     /// forgotten, since nothing tells what became of its modules.
     void adoptSkin(Skin skin);
+    /// Undoable; whoever undoes it drops the pose.
     /// @return the new pose's number; `readings` get it.
     int addPose(std::vector<GravityReading> readings);
+    /// Undoable; whoever undoes it drops the view.
     /// @return the new view's name.
     std::string addView(ScannedView view);
-    /// In the place of one of the same name: scanned again. Nothing where there is none.
+    /// In the place of one of the same name: scanned again. What was decided about the older scan does not hold for it.
+    /// Undoable, which brings both back. Nothing where there is none.
     void replaceView(ScannedView view);
 
-    /// Everything else is undoable. `text` is what the menu calls it.
+    /// Undoable. `text` is what the menu calls it.
     void decide(const QString& text, const std::function<void(Decisions&)>& change);
 
     /// An empty document, or one that was read.
@@ -83,10 +88,13 @@ class Session : public QObject {
     void fileFailed(const QString& why);
 
   private:
-    friend class DecideCommand;
+    class DecideCommand;
+    class MeasureCommand;
+    class ReplaceCommand;
 
     void write(const QString& directory, bool isCopy);
-    void swapDecisions(Decisions& other);
+    void swap(DecisionChange& change);
+    void swap(ScannedView& view);
     void setSaved(std::uint64_t revision);
     void changed(bool onlyGrew);
     void forgetSolution();

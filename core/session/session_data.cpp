@@ -43,12 +43,13 @@ ViewDetections withoutRejected(ViewDetections view, const Decisions& decisions) 
     for (Undetected& undetected : view.undetected) {
         const auto why = undetected.spots.empty() ? std::nullopt : whyRejected(undetected.module);
         if (why)
-            undetected = {undetected.module, DetectionVerdict::NotFound, *why};
+            undetected = {undetected.module, DetectionVerdict::NotFound, *why, {}, Undetected::Cause::Rejected};
     }
     std::erase_if(view.found, [&](const LedDetection& detection) {
         const auto why = whyRejected(detection.module);
         if (why)
-            view.undetected.push_back({detection.module, DetectionVerdict::NotFound, *why});
+            view.undetected.push_back(
+                {detection.module, DetectionVerdict::NotFound, *why, {}, Undetected::Cause::Rejected});
         return why.has_value();
     });
     return view;

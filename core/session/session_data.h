@@ -22,9 +22,16 @@ struct ScannedView {
     std::vector<FrameInfo> frames;             ///< empty where only detections were recorded
     std::shared_ptr<const Pictures> pictures;  ///< of `frames`; null where they are on the disk alone
     ViewDetections decoded;                    ///< before anybody rejected anything
+    /// What was noticed beside that; empty where it was not scanned here.
+    struct Scan {
+        double moved_px = 0;    ///< the camera, meanwhile
+        std::size_t shone = 0;  ///< spots with the first light: many more than modules found say that it went wrong
+    };
+    std::optional<Scan> scan{};
 };
 
-/// What devices reported; it grows, and nothing in it is ever changed by a decision.
+/// What devices reported. It grows, and nothing in it is ever changed by a decision, but for a view that is scanned
+/// anew: the older scan of it stays with the step that took its place.
 struct Measured {
     Skin skin;  ///< without the operator's word on links
     std::vector<GravityReading> gravity;
@@ -52,7 +59,7 @@ struct DetectionKey {
     friend auto operator<=>(const DetectionKey&, const DetectionKey&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
-/// All that the operator decided: one value, so that undoing is putting an older one back.
+/// All that the operator decided: one value. What a step changes of it is a DecisionChange.
 struct Decisions {
     std::map<LinkKey, LinkKind> links;
     std::set<int> droppedPoses;

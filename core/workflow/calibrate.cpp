@@ -38,10 +38,11 @@ void applyDecisions(const Recording& recording, ViewDetections& view) {
             std::erase_if(view.found, [&](const LedDetection& d) { return d.module == decision.module; });
         const std::string why = "rejected by the operator" + (decision.reason.empty() ? "" : ": " + decision.reason);
         if (removed > 0)
-            view.undetected.push_back({decision.module, DetectionVerdict::NotFound, why});
+            view.undetected.push_back(
+                {decision.module, DetectionVerdict::NotFound, why, {}, Undetected::Cause::Rejected});
         for (Undetected& undetected : view.undetected) {
             if (undetected.module == decision.module && !undetected.spots.empty())
-                undetected = {decision.module, DetectionVerdict::NotFound, why};
+                undetected = {decision.module, DetectionVerdict::NotFound, why, {}, Undetected::Cause::Rejected};
         }
     }
 }

@@ -1,47 +1,97 @@
 #include "ui/pages/detection_table.h"
 
 #include <QBoxLayout>
+#include <QCheckBox>
+#include <QDoubleSpinBox>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
-#include <QSortFilterProxyModel>
 #include <QTableView>
 
 #include "ui/pages/page.h"
+#include "ui/pages/spot_card.h"
+#include "ui/presenters/detection_filter.h"
 #include "ui/presenters/scan_presenter.h"
-#include "ui/widgets/image_conversion.h"
 
 namespace skincal {
-namespace {
-
-constexpr int kCrop_px = 64;  // on the screen
-
-QLabel* cropLabel(const QString& name) {
-    auto* label = new QLabel;
-    label->setFixedSize(kCrop_px, kCrop_px);
-    label->setAlignment(Qt::AlignCenter);
-    label->setFrameShape(QFrame::StyledPanel);
-    label->setAccessibleName(name);
-    label->setToolTip(name);
-    return label;
-}
-
-}  // namespace
 
 DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, QWidget* parent)
     : QWidget(parent),
-      workbench_(workbench),
       presenter_(presenter),
       accept_(new QPushButton(tr("Accept"))),
       reject_(new QPushButton(tr("Reject"))),
-      sorted_(new QSortFilterProxyModel(this)),
+      filter_(new DetectionFilter(presenter.detections(), this)),
+      number_(new QLineEdit),
+      doubtful_(new QCheckBox(tr("Needs a look"))),
+      far_(new QCheckBox(tr("Residual above"))),
+      limit_(new QDoubleSpinBox),
+      count_(mutedLabel()),
       table_(new QTableView),
-      evidence_(mutedLabel()) {
+      card_(new SpotCard(workbench)) {
     auto* rows = new QVBoxLayout(this);
     rows->setContentsMargins(0, 4, 0, 0);
-    sorted_->setSourceModel(&presenter.detections());
-    sorted_->setSortRole(DetectionModel::kSortRole);
-    table_->setModel(sorted_);
+    rows->setSpacing(6);
+    rows->addWidget(filterRow());
+    setUpTable();
+    // All of the width: the reason is the longest column, and the one that is read.
+    rows->addWidget(table_, 1);
+    accept_->setObjectName(QStringLiteral("accept"));
+    reject_->setObjectName(QStringLiteral("reject"));
+    accept_->setToolTip(tr("Take back that you rejected the selected detections"));
+    reject_->setToolTip(tr("The selected detections are no LEDs of these modules and do not count"));
+    card_->addButton(*accept_);
+    card_->addButton(*reject_);
+    rows->addWidget(card_);
+    connect(accept_, &QPushButton::clicked, this, [this] { presenter_.detections().accept(selected()); });
+    connect(reject_, &QPushButton::clicked, this, [this] { presenter_.detections().reject(selected()); });
+    showEvidence();
+    countRows();
+}
+
+QWidget* DetectionTable::filterRow() {
+    auto* row = new QWidget;
+    auto* parts = new QHBoxLayout(row);
+    parts->setContentsMargins(0, 0, 0, 0);
+    parts->setSpacing(8);
+    number_->setObjectName(QStringLiteral("findModule"));
+    number_->setPlaceholderText(tr("Module"));
+    number_->setAccessibleName(tr("Find a module by its number"));
+    number_->setToolTip(tr("Shows the modules whose number has these digits in it"));
+    number_->setClearButtonEnabled(true);
+    number_->setMaximumWidth(100);
+    doubtful_->setObjectName(QStringLiteral("needsALook"));
+    doubtful_->setToolTip(
+        tr("Shows only what does not count, with the reason, and what counts with a residual above the limit"));
+    far_->setObjectName(QStringLiteral("residualAbove"));
+    far_->setToolTip(tr("Shows only detections farther than this from where the body has them: reject what is no LED"));
+    limit_->setObjectName(QStringLiteral("residualLimit"));
+    limit_->setAccessibleName(tr("Limit of the residual"));
+    limit_->setToolTip(tr("Limit of the residual. A steady camera and a sound body leave some hundredths of a pixel."));
+    limit_->setRange(0, 100);
+    limit_->setDecimals(2);
+    limit_->setSingleStep(0.1);
+    limit_->setSuffix(tr(" px"));
+    limit_->setValue(filter_->limit());
+    count_->setObjectName(QStringLiteral("shownCount"));
+    count_->setWordWrap(false);
+    parts->addWidget(number_);
+    parts->addWidget(doubtful_);
+    parts->addWidget(far_);
+    parts->addWidget(limit_);
+    parts->addStretch();
+    parts->addWidget(count_);
+    connect(number_, &QLineEdit::textChanged, filter_, &DetectionFilter::setNumber);
+    connect(doubtful_, &QCheckBox::toggled, filter_, &DetectionFilter::setDoubtfulOnly);
+    connect(far_, &QCheckBox::toggled, filter_, &DetectionFilter::setFarOnly);
+    connect(limit_, &QDoubleSpinBox::valueChanged, filter_, &DetectionFilter::setLimit);
+    for (const auto signal : {&QAbstractItemModel::rowsInserted, &QAbstractItemModel::rowsRemoved})
+        connect(filter_, signal, this, &DetectionTable::countRows);
+    return row;
+}
+
+void DetectionTable::setUpTable() {
+    table_->setModel(filter_);
     table_->setObjectName(QStringLiteral("detections"));
     table_->setAccessibleName(tr("Modules in this view"));
     table_->setSortingEnabled(true);
@@ -53,48 +103,20 @@ DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, Q
     for (const int column : {DetectionModel::Module, DetectionModel::Residual, DetectionModel::Sigma})
         table_->setColumnWidth(column, 92);  // with the arrow of what it is sorted by
     table_->setColumnWidth(DetectionModel::State, 110);
-    // All of the width: the reason is the longest column, and the one that is read.
-    rows->addWidget(table_, 1);
-    auto* below = new QHBoxLayout;
-    below->setSpacing(8);
-    const std::array names{tr("lit"), tr("dark"), tr("difference")};
-    for (std::size_t i = 0; i < crops_.size(); ++i) {
-        auto* column = new QVBoxLayout;
-        crops_.at(i) = cropLabel(names.at(i));
-        column->addWidget(crops_.at(i));
-        auto* name = mutedLabel(names.at(i));
-        name->setAlignment(Qt::AlignCenter);
-        column->addWidget(name);
-        column->setSpacing(2);
-        below->addLayout(column);
-    }
-    evidence_->setObjectName(QStringLiteral("evidence"));
-    evidence_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-    below->addWidget(evidence_, 1);
-    auto* buttons = new QVBoxLayout;
-    accept_->setObjectName(QStringLiteral("accept"));
-    reject_->setObjectName(QStringLiteral("reject"));
-    accept_->setToolTip(tr("Take back that you rejected the selected detections"));
-    reject_->setToolTip(tr("The selected detections are no LEDs of these modules and do not count"));
-    buttons->addWidget(accept_);
-    buttons->addWidget(reject_);
-    buttons->addStretch();
-    below->addLayout(buttons);
-    rows->addLayout(below);
-    connect(accept_, &QPushButton::clicked, this, [this] { presenter_.detections().accept(selected()); });
-    connect(reject_, &QPushButton::clicked, this, [this] { presenter_.detections().reject(selected()); });
     // Sorting anew and other views clear the selection without a word: it goes with the modules.
-    connect(sorted_, &QAbstractItemModel::modelAboutToBeReset, this, [this] { kept_ = selected(); });
-    connect(sorted_, &QAbstractItemModel::modelReset, this, [this] {
+    connect(filter_, &QAbstractItemModel::modelAboutToBeReset, this, [this] { kept_ = selected(); });
+    connect(filter_, &QAbstractItemModel::modelReset, this, [this] {
         QItemSelection chosen;
         for (const ModuleId module : std::exchange(kept_, {})) {
             if (const auto row = presenter_.detections().rowOf(module)) {
-                const QModelIndex index = sorted_->mapFromSource(presenter_.detections().index(*row, 0));
-                chosen.select(index, index);
+                const QModelIndex index = filter_->mapFromSource(presenter_.detections().index(*row, 0));
+                if (index.isValid())
+                    chosen.select(index, index);
             }
         }
         table_->selectionModel()->select(chosen, QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
         showEvidence();
+        countRows();
         refresh();
     });
     connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] {
@@ -107,71 +129,37 @@ DetectionTable::DetectionTable(Workbench& workbench, ScanPresenter& presenter, Q
 std::vector<ModuleId> DetectionTable::selected() const {
     std::vector<ModuleId> modules;
     for (const QModelIndex& row : table_->selectionModel()->selectedRows())
-        modules.push_back(
-            presenter_.detections().rows()[static_cast<std::size_t>(sorted_->mapToSource(row).row())].module);
+        modules.push_back(filter_->rowAt(row.row()).module);
     return modules;
 }
 
 void DetectionTable::select(ModuleId module) {
-    if (const auto row = presenter_.detections().rowOf(module)) {
-        const QModelIndex index = sorted_->mapFromSource(presenter_.detections().index(*row, 0));
-        table_->selectRow(index.row());
-        table_->scrollTo(index);
+    const auto row = presenter_.detections().rowOf(module);
+    if (!row)
+        return;
+    const auto place = [&] { return filter_->mapFromSource(presenter_.detections().index(*row, 0)); };
+    if (!place().isValid()) {
+        number_->clear();
+        doubtful_->setChecked(false);
+        far_->setChecked(false);
     }
+    table_->selectRow(place().row());
+    table_->scrollTo(place());
 }
 
-/// The word sent and the word received, as far as a line holds them.
-QString DetectionTable::wordsBelowEachOther(const WordReading& reading) {
-    constexpr int kLongest = 64;
-    const QString sent = QString::fromStdString(reading.sent);
-    const QString received = QString::fromStdString(reading.received);
-    if (sent.size() > kLongest)
-        return {};
-    return QLatin1String("\n") + tr("sent %1\nseen %2").arg(sent, received);
+void DetectionTable::countRows() {
+    const int all = presenter_.detections().rowCount();
+    count_->setText(filter_->isOn() ? tr("%1 of %2").arg(filter_->rowCount()).arg(all) : QString());
+    count_->setToolTip(tr("Modules that are shown, of all modules of the skin"));
 }
 
 void DetectionTable::showEvidence() {
-    for (QLabel* crop : crops_)
-        crop->clear();
-    evidence_->clear();
     const auto modules = selected();
-    if (modules.size() != 1) {
-        evidence_->setText(modules.empty() ? tr("Select a module to see what decided.") : QString());
-        return;
-    }
-    const auto row = presenter_.detections().rowOf(modules.front());
-    const ScannedView* view = workbench_.session().findView(presenter_.shownView());
-    if (!row || view == nullptr)
-        return;
-    const DetectionRow& detection = presenter_.detections().rows()[static_cast<std::size_t>(*row)];
-    if (!detection.pixel) {
-        evidence_->setText(detection.reason);
-        return;
-    }
-    const auto evidence = evidenceOf(*view, detection.module, *detection.pixel);
-    if (!evidence) {
-        evidence_->setText(tr("This view was recorded without pictures."));
-        return;
-    }
-    const std::array pictures{evidence->lit, evidence->dark, evidence->difference};
-    for (std::size_t i = 0; i < pictures.size(); ++i)
-        crops_.at(i)->setPixmap(QPixmap::fromImage(toImage(pictures.at(i)))
-                                    .scaled(kCrop_px - 4, kCrop_px - 4, Qt::KeepAspectRatio, Qt::FastTransformation));
-    QString text = tr("Module %1: %2 grey levels between on and off, centre at (%3, %4) px")
-                       .arg(detection.module.value)
-                       .arg(evidence->contrast, 0, 'f', 0)
-                       .arg(detection.pixel->x(), 0, 'f', 2)
-                       .arg(detection.pixel->y(), 0, 'f', 2);
-    if (!detection.reason.isEmpty())
-        text += tr("; %1").arg(detection.reason);
-    if (detection.reading) {
-        text += QLatin1String("\n") +
-                tr("Light %1 times its noise; ahead of whatever else it could be by %2 (20 is enough)")
-                    .arg(detection.reading->snr, 0, 'f', 0)
-                    .arg(detection.reading->margin, 0, 'f', 0) +
-                wordsBelowEachOther(*detection.reading);
-    }
-    evidence_->setText(text);
+    const auto row = modules.size() == 1 ? presenter_.detections().rowOf(modules.front()) : std::nullopt;
+    if (row)
+        card_->showDetection(presenter_.shownView(), presenter_.detections().rows()[static_cast<std::size_t>(*row)]);
+    else
+        card_->showNothing(modules.empty() ? tr("Select a module to see what decided.") : QString());
 }
 
 void DetectionTable::refresh() {

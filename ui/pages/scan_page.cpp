@@ -41,9 +41,7 @@ std::vector<PictureMark> liveMarks(const std::vector<LiveSpot>& spots) {
 }  // namespace
 
 ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* parent)
-    : Page(tr("Scan"),
-           tr("Every module blinks a word of its own before the camera. Hold camera and body still meanwhile."),
-           parent),
+    : Page(tr("Scan"), tr("Every module blinks a word of its own. Hold camera and body still meanwhile."), parent),
       workbench_(workbench),
       presenter_(presenter),
       picture_(new PictureView),
@@ -77,7 +75,10 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     views_->setToolTip(tr("The camera's picture now, or a view that was scanned"));
     row->addWidget(views_);
     row->addWidget(summary_, 1);
-    again_->setToolTip(tr("Scan in the place of the shown view; the camera must stand where it stood"));
+    again_->setObjectName(QStringLiteral("scanAgain"));
+    again_->setToolTip(
+        tr("Scan from where the camera stands now, in the place of the shown view. What you decided about its "
+           "detections is forgotten; undo brings both back."));
     dropView_->setObjectName(QStringLiteral("dropView"));
     dropView_->setToolTip(tr("The shown view no longer counts; undo brings it back"));
     row->addWidget(again_);
@@ -90,7 +91,7 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     splitter->addWidget(table_);
     splitter->setStretchFactor(0, 1);
     splitter->setStretchFactor(1, 1);
-    splitter->setSizes({300, 250});
+    splitter->setSizes({210, 340});
     splitter->setChildrenCollapsible(false);
     body().addWidget(splitter, 1);
 
@@ -225,6 +226,10 @@ void ScanPage::refresh() {
             text += tr(", %n spots", nullptr, static_cast<int>(spots.size())) + tr(", %1 of them known").arg(known);
         if (const auto left = presenter_.timeLeft())
             text += tr(", %1 s left").arg(std::chrono::duration<double>(*left).count(), 0, 'f', 0);
+        if (const auto moved = presenter_.movedSoFar_px())
+            text = tr("The camera moved by %1 px: cancel, and scan again with camera and body at rest.")
+                       .arg(*moved, 0, 'f', 1) +
+                   QLatin1Char(' ') + text;
     } else if (state.phase == Phase::Failed) {
         text = tr("Broken off: %1").arg(presenter_.why());
     } else {

@@ -9,12 +9,37 @@ namespace {
 
 using State = DetectionRow::State;
 
-State stateOf(DetectionVerdict verdict) {
-    return verdict == DetectionVerdict::Ambiguous ? State::Ambiguous : State::NotFound;
+State stateOf(const Undetected& undetected) {
+    using Cause = Undetected::Cause;
+    switch (undetected.cause) {
+        case Cause::TooWeak:
+            return State::TooWeak;
+        case Cause::Reflected:
+            return State::Reflected;
+        case Cause::Alike:
+            return State::Ambiguous;
+        case Cause::NotAnLed:
+            return State::NotAnLed;
+        case Cause::TooBright:
+            return State::TooBright;
+        case Cause::NeverBlinked:
+            return State::NeverLit;
+        case Cause::CameraMoved:
+            return State::CameraMoved;
+        case Cause::Rejected:
+            return State::Rejected;
+        default:
+            return undetected.verdict == DetectionVerdict::Ambiguous ? State::Ambiguous : State::NotVisible;
+    }
+}
+
+/// The picture alone can't tell, but the body may.
+bool isOpen(State state) {
+    return state == State::Ambiguous || state == State::Reflected;
 }
 
 /// What the decoder made of a view.
-std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Decisions& decisions) {
+std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Skin& skin, const Decisions& decisions) {
     std::map<ModuleId, DetectionRow> rows;
     std::set<ModuleId> several;  // spots to choose from
     const ViewDetections& decoded = view.decoded;
@@ -27,10 +52,18 @@ std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Deci
     for (const Undetected& undetected : view.decoded.undetected) {
         DetectionRow& row = rows[undetected.module];
         row.module = undetected.module;
-        row.state = stateOf(undetected.verdict);
+        row.state = stateOf(undetected);
         row.reason = QString::fromStdString(undetected.reason);
         if (!undetected.spots.empty())
             several.insert(undetected.module);
+    }
+    // Recordings without pictures name what they found alone; and a skin may have grown.
+    for (const SkinModule& module : skin.modules) {
+        DetectionRow missing;
+        missing.module = module.id;
+        missing.reason = view.frames.empty() ? DetectionModel::tr("the recording has no spot of it")
+                                             : DetectionModel::tr("it was not connected when this view was scanned");
+        rows.try_emplace(module.id, std::move(missing));
     }
     for (auto& [module, row] : rows) {
         const auto decision = decisions.detections.find({view.name, module});
@@ -63,10 +96,10 @@ void addResiduals(const BodyView& view, const ScannedView& scanned, std::map<Mod
         DetectionRow& row = found->second;
         if (observation.residual)
             row.residual_px = observation.residual->norm();
-        if (row.state == State::Ambiguous)
+        if (isOpen(row.state))
             row.reason = QString::fromStdString(observation.reason);
         // The body told which of several spots it is.
-        if (row.state == State::Ambiguous && observation.verdict == ObservationVerdict::Used) {
+        if (isOpen(row.state) && observation.verdict == ObservationVerdict::Used) {
             row.state = State::Used;
             row.pixel = observation.pixel;
             row.sigma_px = sigmaOfSpot(scanned, observation.module, *observation.pixel);
@@ -88,10 +121,53 @@ QString nameOf(DetectionRow::State state) {
             return DetectionModel::tr("set aside");
         case State::Rejected:
             return DetectionModel::tr("rejected");
+        case State::Reflected:
+            return DetectionModel::tr("reflected");
         case State::Ambiguous:
             return DetectionModel::tr("ambiguous");
+        case State::TooWeak:
+            return DetectionModel::tr("too weak");
+        case State::TooBright:
+            return DetectionModel::tr("too bright");
+        case State::NotAnLed:
+            return DetectionModel::tr("not an LED");
+        case State::CameraMoved:
+            return DetectionModel::tr("camera moved");
+        case State::NeverLit:
+            return DetectionModel::tr("never lit");
         default:
-            return DetectionModel::tr("not found");
+            return DetectionModel::tr("not visible");
+    }
+}
+
+QString meaningOf(DetectionRow::State state) {
+    switch (state) {
+        case State::Used:
+            return DetectionModel::tr("Found, and the body rests on it.");
+        case State::SetAside:
+            return DetectionModel::tr("Found, but it disagrees with all else that was measured, and does not count.");
+        case State::Rejected:
+            return DetectionModel::tr("You said that this is not its LED.");
+        case State::Reflected:
+            return DetectionModel::tr(
+                "Several spots blink its word: the LED and its mirror images. Cover what mirrors, or look from "
+                "another side.");
+        case State::Ambiguous:
+            return DetectionModel::tr("A spot fits it no better than another module. Another scan has other words.");
+        case State::TooWeak:
+            return DetectionModel::tr(
+                "What may be its spot hardly rises above the noise. Go nearer, expose longer or dim the room.");
+        case State::TooBright:
+            return DetectionModel::tr("Its spot is clipped, so that its centre can't be told. Expose shorter.");
+        case State::NotAnLed:
+            return DetectionModel::tr("What blinks its word is no clean spot: stray light, or light of others in it.");
+        case State::CameraMoved:
+            return DetectionModel::tr("The camera moved while its word was shown. Scan again with the camera at rest.");
+        case State::NeverLit:
+            return DetectionModel::tr("Its LED was not lit so that it could be told from others.");
+        default:
+            return DetectionModel::tr(
+                "Nothing in the picture blinks its word: it is turned away, hidden or out of the picture.");
     }
 }
 
@@ -126,7 +202,7 @@ QVariant DetectionModel::data(const QModelIndex& index, int role) const {
         return value ? QVariant(tr("%1 px").arg(*value, 0, 'f', 3)) : QVariant(tr("–"));
     };
     if (role == Qt::ToolTipRole)
-        return row.reason;
+        return index.column() == State || row.reason.isEmpty() ? meaningOf(row.state) : row.reason;
     const bool isNumber = index.column() == Module || index.column() == Residual || index.column() == Sigma;
     if (role == Qt::TextAlignmentRole)
         return static_cast<int>((isNumber ? Qt::AlignRight : Qt::AlignLeft) | Qt::AlignVCenter);
@@ -136,6 +212,8 @@ QVariant DetectionModel::data(const QModelIndex& index, int role) const {
         case Module:
             return row.module.value;
         case State:
+            if (role == kSortRole)
+                return static_cast<int>(row.state);
             return row.isOperatorsWord ? tr("%1 (your word)").arg(nameOf(row.state)) : nameOf(row.state);
         case Residual:
             return number(row.residual_px);
@@ -203,7 +281,7 @@ void DetectionModel::refresh() {
     Session& session = workbench_.session();
     std::map<ModuleId, DetectionRow> rows;
     if (const ScannedView* view = session.findView(view_)) {
-        rows = decodedRows(*view, session.decisions());
+        rows = decodedRows(*view, session.measured().skin, session.decisions());
         if (session.solution()) {
             for (const BodyView& solved : session.solution()->body.views) {
                 if (solved.name == view_)

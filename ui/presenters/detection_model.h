@@ -8,9 +8,22 @@ namespace skincal {
 
 /// What became of one module in one view.
 struct DetectionRow {
-    enum class State { Used, SetAside, Rejected, NotFound, Ambiguous };
+    /// From what counts to what can't: sorted by it, they come in this order.
+    enum class State {
+        Used,
+        SetAside,
+        Rejected,
+        Reflected,
+        Ambiguous,
+        TooWeak,
+        TooBright,
+        NotAnLed,
+        CameraMoved,
+        NeverLit,
+        NotVisible,
+    };
     ModuleId module;
-    State state = State::NotFound;
+    State state = State::NotVisible;
     std::optional<Vector2d> pixel;
     std::optional<double> sigma_px;
     std::optional<double> residual_px;  ///< length, against the newest body
@@ -52,5 +65,7 @@ class DetectionModel : public QAbstractTableModel {
 };
 
 [[nodiscard]] QString nameOf(DetectionRow::State state);
+/// What it means and what mends it, in a sentence.
+[[nodiscard]] QString meaningOf(DetectionRow::State state);
 
 }  // namespace skincal

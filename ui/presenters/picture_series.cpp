@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "core/vision/light_change.h"
 #include "ui/presenters/camera_words.h"
@@ -52,7 +53,8 @@ void PictureSeries::start(LitSets lit) {
     lit_ = std::move(lit);
     pictures_.assign(lit_.size(), {});
     frames_.assign(lit_.size(), {});
-    began_ = Clock::now();
+    began_ = now();
+    paused_.reset();
     told_ = 0;
     if (workbench_.skin() != nullptr)
         workbench_.skin()->prepare(lit_);
@@ -118,8 +120,12 @@ double PictureSeries::done() const {
 std::optional<std::chrono::milliseconds> PictureSeries::timeLeft() const {
     if (!state_.isRunning() || state_.taken() == 0)
         return std::nullopt;
-    const auto soFar = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - began_);
+    const auto soFar = std::chrono::duration_cast<std::chrono::milliseconds>(now() - began_);
     return soFar * static_cast<int>(state_.left.size()) / static_cast<int>(state_.taken());
+}
+
+ScanRun::Time PictureSeries::now() const {
+    return workbench_.camera() != nullptr ? workbench_.camera()->now() : ScanRun::Time{0};
 }
 
 void PictureSeries::attachCamera() {
@@ -179,6 +185,10 @@ void PictureSeries::handle(const scan_run::Event& event) {
     const ScanRun before = state_;
     const auto [state, effects] = step(state_, event);
     state_ = state;
+    if (state_.phase == ScanRun::Phase::Paused && !paused_)
+        paused_ = now();
+    else if (state_.isRunning() && paused_)
+        began_ += now() - *std::exchange(paused_, std::nullopt);
     if (before.isRunning() != state_.isRunning())
         emit runningChanged(state_.isRunning());
     for (const scan_run::Effect& effect : effects)
@@ -188,14 +198,13 @@ void PictureSeries::handle(const scan_run::Event& event) {
 }
 
 void PictureSeries::act(const scan_run::Effect& effect) {
-    using Time = ScanRun::Time;
     SkinDevice* skin = workbench_.skin();
     std::visit(
         Overloaded{[&](const scan_run::Light& light) {
                        const auto& lit = lit_[light.frame];
-                       const auto now = workbench_.camera() != nullptr ? workbench_.camera()->now() : Time{};
+                       const ScanRun::Time commanded = now();
                        const std::uint64_t token = light.at ? skin->lightAt(lit, *light.at) : skin->light(lit);
-                       handle(scan_run::LightCommanded{token, now});
+                       handle(scan_run::LightCommanded{token, commanded});
                    },
                    [&](scan_run::TakeReference) { reference_ = newest_.image; },
                    [&](const scan_run::KeepPicture& picture) { keep(picture.frame); },

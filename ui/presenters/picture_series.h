@@ -52,7 +52,8 @@ class PictureSeries : public QObject {
     };
     [[nodiscard]] Taken taken() const;
 
-    /// Share of the pictures that are taken, and how long the rest takes at the pace so far; nothing at the beginning.
+    /// Share of the pictures that are taken, and how long the rest takes at the pace so far, by the camera's clock and
+    /// without pauses; nothing at the beginning.
     [[nodiscard]] double done() const;
     [[nodiscard]] std::optional<std::chrono::milliseconds> timeLeft() const;
 
@@ -76,7 +77,7 @@ class PictureSeries : public QObject {
     void handle(const scan_run::Event& event);
     void act(const scan_run::Effect& effect);
 
-    using Clock = std::chrono::steady_clock;
+    [[nodiscard]] ScanRun::Time now() const;
 
     Workbench& workbench_;
     ScanRun state_;
@@ -87,8 +88,9 @@ class PictureSeries : public QObject {
     std::size_t told_ = 0;           ///< by kept()
     CameraFrame newest_;
     cv::Mat reference_;
-    Clock::time_point began_;
-    QString words_;  ///< of who failed last
+    ScanRun::Time began_{0};               ///< later by as long as it paused
+    std::optional<ScanRun::Time> paused_;  ///< since then
+    QString words_;                        ///< of who failed last
 };
 
 }  // namespace skincal

@@ -49,6 +49,8 @@ PosePresenter::PosePresenter(Workbench& workbench, QObject* parent)
     connect(&session, &Session::posesChanged, this, &PosePresenter::refresh);
     connect(&session, &Session::decisionsChanged, this, &PosePresenter::refresh);
     connect(&session, &Session::solutionChanged, this, &PosePresenter::stateChanged);
+    QUndoStack& undo = workbench.session().undoStack();
+    connect(&undo, &QUndoStack::indexChanged, this, [this, &undo] { isHeld_ = undo.canRedo(); });
     connect(&workbench, &Workbench::skinChosen, this, &PosePresenter::attachDevice);
     connect(&workbench, &Workbench::skinReadyChanged, this, [this] { setActive(isActive_); });
     if (workbench.skin() != nullptr)
@@ -163,7 +165,9 @@ void PosePresenter::takeSample(const AccelerationSample& sample) {
     pose_capture::Sample event{sample.time, meter_->isAtRest(), true};
     if (event.isAtRest) {
         const auto means = meter_->meansSince(sample.time - stillness_.window, 0);
-        event.isNew = angleToNearestPose(countingReadings_, means) > kSamePose;
+        event.isNew = !isHeld_ && angleToNearestPose(countingReadings_, means) > kSamePose;
+    } else if (meter_->movement()) {
+        isHeld_ = false;
     }
     handle(event);
     if (now_ < lastShown_ || now_ - lastShown_ >= kFrame) {

@@ -89,6 +89,9 @@ class PosePresenter : public QObject {
     std::chrono::microseconds now_{};
     std::chrono::microseconds lastShown_{};
     bool isActive_ = false;
+    /// Something was undone and the body has not moved since: a capture by itself would be what was just undone, and
+    /// end what can be redone.
+    bool isHeld_ = false;
 };
 
 /// Of directions spread evenly over the sphere, the one farthest from all that are covered, where upside down counts as

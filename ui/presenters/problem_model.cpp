@@ -137,10 +137,6 @@ ProblemModel::ProblemModel(Workbench& workbench, const ConnectPresenter& connect
         connect(workbench_.camera(), &FrameSource::abilitiesChanged, this, &ProblemModel::refresh);
         refresh();
     });
-    connect(&scan, &ScanPresenter::scanned, this, [this](const std::string& view, double moved_px, std::size_t shone) {
-        scans_[view] = {moved_px, shone};
-        refresh();
-    });
     refresh();
 }
 
@@ -226,29 +222,29 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
         problems.push_back({Severity::Error, Step::Result, session.failure(), {}, {}});
     for (const WiringFault& fault : wiringFaults(session.measured().skin))
         problems.push_back(problemOf(fault));
-    for (const auto& [view, scan] : scans_) {
-        const ScannedView* scanned = session.findView(view);
-        if (scanned == nullptr || session.decisions().droppedViews.contains(view))
+    for (const ScannedView& view : session.measured().views) {
+        if (!view.scan || session.decisions().droppedViews.contains(view.name))
             continue;
-        const std::size_t found = scanned->decoded.found.size();
+        const ScannedView::Scan& scan = *view.scan;
+        const std::size_t found = view.decoded.found.size();
         if (scan.shone >= kFewSpots && 2 * found < scan.shone)
             problems.push_back({Severity::Warning,
                                 Step::Scan,
                                 tr("%1: %2 spots shone, only %3 could be told apart: scan it again, at rest and not "
                                    "too bright")
-                                    .arg(view.c_str())
+                                    .arg(view.name.c_str())
                                     .arg(scan.shone)
                                     .arg(found),
                                 {},
-                                view});
+                                view.name});
         if (scan.moved_px > kMoved_px)
             problems.push_back({Severity::Warning,
                                 Step::Scan,
                                 tr("The camera moved by %1 px while %2 was scanned: scan it again")
                                     .arg(scan.moved_px, 0, 'f', 1)
-                                    .arg(view.c_str()),
+                                    .arg(view.name.c_str()),
                                 {},
-                                view});
+                                view.name});
     }
     if (session.solution())
         addSolution(*session.solution(), problems);

@@ -49,11 +49,6 @@ class ProblemModel : public QAbstractListModel {
     std::optional<Problem> notice_;
     std::optional<Problem> kept_;
     QString cameraFailure_;
-    struct Scan {
-        double moved_px = 0;    ///< the camera, meanwhile
-        std::size_t shone = 0;  ///< spots with the first light
-    };
-    std::map<std::string, Scan> scans_;
 };
 
 }  // namespace skincal

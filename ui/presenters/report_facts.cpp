@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <opencv2/core.hpp>
 
-#include "ui/presenters/scan_job.h"
+#include "ui/presenters/spot_evidence.h"
 
 namespace skincal {
 namespace {

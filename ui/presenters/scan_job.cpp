@@ -23,10 +23,6 @@ double shiftBetween(const cv::Mat& a, const cv::Mat& b) {
     return 2 * std::hypot(shift.x, shift.y);
 }
 
-bool isLit(const FrameInfo& frame, ModuleId module) {
-    return std::any_of(frame.lit.begin(), frame.lit.end(), [&](const LitModule& lit) { return lit.module == module; });
-}
-
 }  // namespace
 
 tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
@@ -39,9 +35,10 @@ tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
     if (!decoded)
         return tl::unexpected(decoded.error().cancelled ? std::string() : decoded.error().message);
     ScanResult result;
+    // Between looks LEDs tell it, and what a knock spoilt is not used.
     std::vector<std::size_t> dark;
     for (std::size_t k = 0; k < frames.size(); ++k) {
-        if (frames[k].lit.empty())
+        if (frames[k].lit.empty() && frames[k].look == frames.back().look)
             dark.push_back(k);
     }
     if (dark.size() >= 2)
@@ -50,41 +47,6 @@ tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
     result.moved_px = std::max(result.moved_px, decoded->moved_px.value_or(0));
     result.view = {{}, std::move(frames), std::move(pictures), *std::move(decoded)};
     return result;
-}
-
-std::optional<SpotEvidence> evidenceOf(const ScannedView& view, ModuleId module, const Vector2d& pixel, int radius) {
-    if (!view.pictures || view.pictures->empty())
-        return std::nullopt;
-    const cv::Size size = view.pictures->front().size();
-    const cv::Rect crop =
-        cv::Rect(cvRound(pixel.x()) - radius, cvRound(pixel.y()) - radius, 2 * radius + 1, 2 * radius + 1) &
-        cv::Rect({}, size);
-    if (crop.empty())
-        return std::nullopt;
-    cv::Mat lit = cv::Mat::zeros(crop.size(), CV_32F);
-    cv::Mat dark = lit.clone();
-    int litCount = 0;
-    int darkCount = 0;
-    for (std::size_t k = 0; k < view.frames.size(); ++k) {
-        cv::Mat grey;
-        toGrey((*view.pictures)[k](crop)).convertTo(grey, CV_32F);
-        const bool on = isLit(view.frames[k], module);
-        (on ? lit : dark) += grey;
-        ++(on ? litCount : darkCount);
-    }
-    if (litCount == 0 || darkCount == 0)
-        return std::nullopt;
-    lit /= litCount;
-    dark /= darkCount;
-    SpotEvidence evidence;
-    evidence.corner = crop.tl();
-    cv::Mat difference = lit - dark;
-    cv::minMaxLoc(difference, nullptr, &evidence.contrast);
-    difference = cv::max(difference, 0.0F);
-    difference.convertTo(evidence.difference, CV_8U, evidence.contrast > 0 ? 255 / evidence.contrast : 1);
-    lit.convertTo(evidence.lit, CV_8U);
-    dark.convertTo(evidence.dark, CV_8U);
-    return evidence;
 }
 
 }  // namespace skincal

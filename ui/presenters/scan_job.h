@@ -21,15 +21,4 @@ struct ScanResult {
                                                                const std::vector<ModuleId>& modules,
                                                                const RunContext& context);
 
-/// What decided about a module in a view: means of the pictures around one pixel, 8 bit grey.
-struct SpotEvidence {
-    cv::Mat lit;          ///< while its LED was on
-    cv::Mat dark;         ///< while it was off
-    cv::Mat difference;   ///< the first minus the second, stretched to full contrast
-    cv::Point corner;     ///< of the crops in the picture
-    double contrast = 0;  ///< grey levels between on and off at the brightest pixel
-};
-[[nodiscard]] std::optional<SpotEvidence> evidenceOf(const ScannedView& view, ModuleId module, const Vector2d& pixel,
-                                                     int radius = 16);
-
 }  // namespace skincal

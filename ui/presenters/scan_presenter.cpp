@@ -188,6 +188,7 @@ void ScanPresenter::decodingFinished() {
 }
 
 void ScanPresenter::deliver(ScanResult result) {
+    result.view.scan = {result.moved_px, watcher_.spots().size()};
     std::string name;
     if (replaced_ && workbench_.session().findView(*replaced_) != nullptr) {
         name = *replaced_;

@@ -47,6 +47,9 @@ class ScanPresenter : public QObject {
     /// What the running scan has found so far; the last one's while no other runs.
     [[nodiscard]] const std::vector<LiveSpot>& spots() const { return watcher_.spots(); }
 
+    /// By how much the camera has moved in the running scan; empty while it stands.
+    [[nodiscard]] std::optional<double> movedSoFar_px() const { return watcher_.moved_px(); }
+
     /// How many pictures a scan takes.
     [[nodiscard]] std::size_t picturesOfAScan() const { return picturesOfAScan_; }
 

@@ -16,11 +16,14 @@ SpotWatcher::~SpotWatcher() {
 void SpotWatcher::begin(std::vector<ModuleId> modules, LitSets lit) {
     clear();
     live_ = std::make_shared<LiveSpots>(std::move(modules), std::move(lit));
+    motion_ = std::make_shared<LiveMotion>();
 }
 
 void SpotWatcher::clear() {
     pool_.clear();
     live_.reset();
+    motion_.reset();
+    moved_px_.reset();
     pictures_ = 0;
     if (!std::exchange(spots_, {}).empty())
         emit changed();
@@ -29,13 +32,14 @@ void SpotWatcher::clear() {
 void SpotWatcher::add(const cv::Mat& picture) {
     if (!live_)
         return;
-    QtConcurrent::run(&pool_, [live = live_, picture] {
+    QtConcurrent::run(&pool_, [live = live_, motion = motion_, picture] {
         live->add(picture);
-        return std::make_pair(live->pictures(), live->spots());
-    }).then(this, [this, live = live_](std::pair<std::size_t, std::vector<LiveSpot>> seen) {
+        motion->add(picture);
+        return std::make_tuple(live->pictures(), live->spots(), motion->moved_px());
+    }).then(this, [this, live = live_](std::tuple<std::size_t, std::vector<LiveSpot>, std::optional<double>> seen) {
         if (live != live_)
             return;  // of a scan that is over
-        std::tie(pictures_, spots_) = std::move(seen);
+        std::tie(pictures_, spots_, moved_px_) = std::move(seen);
         emit changed();
     });
 }

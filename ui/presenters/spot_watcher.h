@@ -4,11 +4,12 @@
 #include <QThreadPool>
 #include <memory>
 
+#include "core/vision/live_motion.h"
 #include "core/vision/live_spots.h"
 
 namespace skincal {
 
-/// LiveSpots in a thread of its own, for a picture that comes now and then.
+/// LiveSpots and LiveMotion in a thread of its own, for a picture that comes now and then.
 class SpotWatcher : public QObject {
     Q_OBJECT
   public:
@@ -22,6 +23,8 @@ class SpotWatcher : public QObject {
     void clear();
 
     [[nodiscard]] const std::vector<LiveSpot>& spots() const { return spots_; }
+    /// By how much the camera has moved; empty while it stands.
+    [[nodiscard]] std::optional<double> moved_px() const { return moved_px_; }
     /// How many pictures have told of them.
     [[nodiscard]] std::size_t pictures() const { return pictures_; }
 
@@ -30,8 +33,10 @@ class SpotWatcher : public QObject {
 
   private:
     QThreadPool pool_;
-    std::shared_ptr<LiveSpots> live_;  ///< touched by the pool's one thread only
+    std::shared_ptr<LiveSpots> live_;     ///< touched by the pool's one thread only
+    std::shared_ptr<LiveMotion> motion_;  ///< likewise
     std::vector<LiveSpot> spots_;
+    std::optional<double> moved_px_;
     std::size_t pictures_ = 0;
 };
 

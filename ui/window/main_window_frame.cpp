@@ -184,7 +184,11 @@ void MainWindow::buildToolBar() {
                          auto described) {
         QAction* action = bar->addAction(word);
         action->setObjectName(QLatin1String(name));
-        action->setShortcut(key);
+        QList<QKeySequence> keys = QKeySequence::keyBindings(key);
+        // Both are in people's fingers, whatever the desktop.
+        if (key == QKeySequence::Redo && !keys.contains(QKeySequence(Qt::CTRL | Qt::Key_Y)))
+            keys << QKeySequence(Qt::CTRL | Qt::Key_Y);
+        action->setShortcuts(keys);
         action->setEnabled(false);  // a window begins with a session in which nothing was decided
         connect(action, &QAction::triggered, &undo, work);
         connect(&undo, canWork, action, &QAction::setEnabled);

@@ -8,8 +8,8 @@
 namespace skincal {
 
 /// Keeps the serial ports of this computer among the skins that can be chosen, as they are plugged in and out: behind
-/// those of a rig, before addresses that were typed. The chosen one stays in the list while it is unplugged. The skin of
-/// a recording that was opened is offered, too: its network can be looked at without the skin.
+/// those of a rig, before addresses that were typed. The chosen one stays in the list while it is unplugged. The skin
+/// of a recording that was opened is offered, too: its network can be looked at without the skin.
 class SkinOffers : public QObject {
     Q_OBJECT
   public:

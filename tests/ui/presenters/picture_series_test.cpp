@@ -105,6 +105,46 @@ TEST(PictureSeries, KeepsNoPictureThatWasExposedBeforeItsLightShowed) {
     EXPECT_FALSE(series.isBusy());
 }
 
+TEST(PictureSeries, TimeLeftIsThePaceOfThePicturesWithoutPauses) {
+    Workbench workbench;
+    workbench.skinOffers.push_back({"skin", "", [] { return std::make_unique<PatientSkin>(); }});
+    workbench.cameraOffers.push_back({"camera", "", [] { return std::make_unique<LateCamera>(); }});
+    workbench.chooseSkin(0);
+    workbench.chooseCamera(0);
+    auto& skin = static_cast<PatientSkin&>(*workbench.skin());
+    auto& camera = static_cast<LateCamera&>(*workbench.camera());
+    PictureSeries series(workbench);
+    series.start({{}, {{ModuleId(1), {}}}, {}, {{ModuleId(2), {}}}, {}});
+    EXPECT_FALSE(series.timeLeft()) << "there is no pace yet";
+    const auto takeOne = [&] {
+        camera.now_ += 1s;
+        skin.show();
+        camera.now_ += 150ms;
+        camera.deliver(camera.now_);
+    };
+    takeOne();
+    ASSERT_TRUE(series.timeLeft());
+    EXPECT_EQ(*series.timeLeft(), 4 * 1150ms);
+    takeOne();
+    EXPECT_EQ(*series.timeLeft(), 3 * 1150ms);
+    for (int pause = 0; pause < 2; ++pause) {
+        series.pause();
+        EXPECT_FALSE(series.timeLeft()) << "nobody knows when it goes on";
+        camera.now_ += 1h;
+        series.resume();
+        EXPECT_EQ(*series.timeLeft(), 3 * 1150ms) << "the hour is no part of the pace";
+    }
+    takeOne();
+    EXPECT_EQ(*series.timeLeft(), 2 * 1150ms);
+    // The next one has a pace of its own.
+    series.pause();
+    camera.now_ += 1h;
+    series.cancel();
+    series.start({{}, {{ModuleId(1), {}}}, {}});
+    takeOne();
+    EXPECT_EQ(*series.timeLeft(), 2 * 1150ms);
+}
+
 /// Takes all pictures of a coded scan and looks whether each shows its pattern, and nothing of another.
 class TimedSeries {
   public:

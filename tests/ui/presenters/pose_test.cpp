@@ -119,6 +119,33 @@ TEST(PosePresenter, DroppedPosesLeaveTheForecast) {
     EXPECT_EQ(desk.pose.forecast(), forecast);
 }
 
+TEST(PosePresenter, ACaptureThatIsUndoneIsNotMadeAgainUntilTheBodyMoves) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    desk.pose.setActive(true);
+    const auto poses = [&] { return posesOf(desk.session().measured(), desk.session().decisions()).size(); };
+    ASSERT_TRUE(waitFor([&] { return poses() == 1; }));
+    EXPECT_EQ(desk.session().undoStack().undoText(), "Capture pose 1");
+    desk.session().undoStack().undo();
+    EXPECT_EQ(poses(), 0U);
+    pass(desk.rig.clock(), 4s);
+    EXPECT_EQ(poses(), 0U);
+    // Looking elsewhere meanwhile moves nothing.
+    desk.pose.setActive(false);
+    desk.pose.setActive(true);
+    pass(desk.rig.clock(), 4s);
+    EXPECT_EQ(poses(), 0U);
+    ASSERT_TRUE(desk.session().undoStack().canRedo());
+    desk.session().undoStack().redo();
+    EXPECT_EQ(poses(), 1U);
+    desk.session().undoStack().undo();
+    desk.rig.turnBody(Vector3d(1, 0, 0));
+    ASSERT_TRUE(waitFor([&] { return poses() == 1; })) << "another pose is captured as ever";
+    // One that is dropped is captured again at once: whoever drops it wants a better one.
+    desk.pose.poses().setDropped(1, true);
+    ASSERT_TRUE(waitFor([&] { return poses() == 1; }));
+}
+
 TEST(PosePresenter, SaysWhenPosesSuffice) {
     Desk desk;
     EXPECT_EQ(desk.pose.verdict(), PoseVerdict::None);

@@ -3,6 +3,7 @@
 
 #include <QSignalSpy>
 
+#include "core/workflow/simulated_recording.h"
 #include "tests/ui/presenters/desk.h"
 
 namespace skincal {
@@ -274,11 +275,10 @@ TEST(ScanPresenter, ScansAViewAgainInItsPlace) {
     EXPECT_EQ(view.decoded.name, name);
     EXPECT_NE(view.pictures, pictures);
     expectSpotsNearTruth(desk, view);
-    const auto found = view.decoded.found.front();
-    const auto evidence = evidenceOf(view, found.module, found.pixel);
-    ASSERT_TRUE(evidence);
-    EXPECT_GT(evidence->contrast, 20);
-    EXPECT_FALSE(evidenceOf(view, found.module, Vector2d(-500, 10)));
+    desk.session().undoStack().undo();
+    EXPECT_EQ(desk.session().measured().views.front().pictures, pictures);
+    desk.session().undoStack().redo();
+    EXPECT_NE(desk.session().measured().views.front().pictures, pictures);
 }
 
 TEST(ScanPresenter, SaysHowFarTheCameraMoved) {
@@ -291,6 +291,70 @@ TEST(ScanPresenter, SaysHowFarTheCameraMoved) {
     desk.scan.start();
     ASSERT_TRUE(waitFor([&] { return !desk.isScanning(); }));
     EXPECT_NEAR(moved, 8, 1);
+}
+
+TEST(ScanPresenter, TellsDuringTheScanThatTheCameraMoved) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    when(desk, Phase::Streaming, 6, [&] { desk.rig.knockCamera(8); });
+    when(desk, Phase::Streaming, 14, [&] { desk.scan.pause(); });
+    desk.scan.start();
+    ASSERT_TRUE(waitFor([&] { return desk.scan.state().phase == Phase::Paused; }));
+    ASSERT_TRUE(waitFor([&] { return desk.scan.movedSoFar_px().has_value(); }));
+    EXPECT_NEAR(*desk.scan.movedSoFar_px(), 8, 1);
+    desk.scan.cancel();
+    EXPECT_FALSE(desk.scan.movedSoFar_px()) << "the next one begins anew";
+    ASSERT_TRUE(desk.scanHere());
+    LiveMotion motion;
+    for (const cv::Mat& picture : *desk.session().measured().views.front().pictures)
+        motion.add(picture);
+    EXPECT_FALSE(motion.moved_px()) << "nobody touched it";
+}
+
+/// Problems that speak of the camera's motion, each with the view that it opens.
+std::vector<std::string> motions(const ProblemModel& problems) {
+    std::vector<std::string> views;
+    for (int row = 0; row < problems.rowCount(); ++row) {
+        const Problem& problem = problems.problemAt(row);
+        if (problem.text.startsWith(QStringLiteral("The camera moved by"))) {
+            EXPECT_EQ(problem.step, Step::Scan);
+            EXPECT_EQ(problem.severity, Problem::Severity::Warning);
+            EXPECT_TRUE(problem.text.contains(problem.view.c_str())) << problem.text.toStdString();
+            views.push_back(problem.view);
+        }
+    }
+    return views;
+}
+
+TEST(ScanPresenter, AMotionIsAProblemOfThatScanAlone) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    when(desk, Phase::Streaming, desk.scan.picturesOfAScan() / 2, [&] { desk.rig.knockCamera(8); });
+    ASSERT_TRUE(desk.scanHere());
+    const std::string knocked = desk.scan.shownView();
+    EXPECT_EQ(motions(desk.problems), std::vector{knocked});
+    desk.scan.setDropped(knocked, true);
+    EXPECT_TRUE(motions(desk.problems).empty()) << "what does not count needs no mending";
+    desk.session().undoStack().undo();
+    EXPECT_EQ(motions(desk.problems), std::vector{knocked});
+
+    ASSERT_TRUE(desk.scanHere());
+    EXPECT_EQ(motions(desk.problems), std::vector{knocked}) << "the next view was still";
+    ASSERT_NE(desk.scan.shownView(), knocked);
+    // Scanned again at rest it is mended; undone, the old scan is back with its problem.
+    desk.scan.start(knocked);
+    ASSERT_TRUE(waitFor([&] { return !desk.isScanning(); }));
+    EXPECT_TRUE(motions(desk.problems).empty());
+    desk.session().undoStack().undo();
+    EXPECT_EQ(motions(desk.problems), std::vector{knocked});
+
+    // Another recording has a view of the same name, and nothing to do with it.
+    Scenario scenario = *findScenario("coded");
+    scenario.views.scan = ScanKind::Detections;
+    OpenedRecording other = openedFrom(recordingOf(buildWorld(scenario, 2)));
+    ASSERT_EQ(other.measured.views.front().name, knocked);
+    desk.session().load(std::move(other));
+    EXPECT_TRUE(motions(desk.problems).empty());
 }
 
 }  // namespace

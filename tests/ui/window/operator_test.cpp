@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QLineEdit>
 #include <QListView>
 #include <QTableView>
 #include <set>
@@ -173,6 +177,49 @@ TEST_F(Opened, UndoingAllAndRedoingAllGivesTheSameBodies) {
         press("redo");
     ASSERT_TRUE(driven_.waitFor([&] { return driven_.isSolved(); }));
     EXPECT_EQ(posesOfBody(), atLast);
+}
+
+TEST_F(Opened, WhatIsFilteredAndSelectedIsRejectedInBulk) {
+    std::set<ModuleId> planted;
+    open("freeform", [&](OpenedRecording& opened) {
+        auto& found = opened.measured.views.front().decoded.found;
+        for (const std::size_t k : {2U, 9U, 14U}) {
+            found.at(k).pixel += Vector2d(6, 4);
+            planted.insert(found.at(k).module);
+        }
+    });
+    driven_.window.showStep(Step::Scan);
+    auto* views = driven_.find<QComboBox>("views");
+    views->setFocus();
+    QTest::keyClick(views, Qt::Key_Home);
+    QTest::keyClick(views, Qt::Key_Down);
+    auto* table = driven_.find<QTableView>("detections");
+    const int all = table->model()->rowCount();
+    ASSERT_GT(all, 20);
+    auto* limit = driven_.find<QDoubleSpinBox>("residualLimit");
+    limit->setFocus();
+    limit->selectAll();
+    QTest::keyClicks(limit, "3");
+    QTest::keyClick(limit, Qt::Key_Return);
+    EXPECT_EQ(table->model()->rowCount(), all) << "a limit alone hides nothing";
+    auto* above = driven_.find<QCheckBox>("residualAbove");
+    above->setFocus();
+    QTest::keyClick(above, Qt::Key_Space);
+    EXPECT_EQ(table->model()->rowCount(), static_cast<int>(planted.size()));
+    EXPECT_EQ(driven_.find<QLabel>("shownCount")->text(), QStringLiteral("%1 of %2").arg(planted.size()).arg(all));
+    table->setFocus();
+    QTest::keyClick(table, Qt::Key_A, Qt::ControlModifier);
+    ASSERT_TRUE(driven_.click("reject"));
+    std::set<ModuleId> rejected;
+    for (const auto& [key, decision] : driven_.session().decisions().detections)
+        rejected.insert(key.module);
+    EXPECT_EQ(rejected, planted) << "what is not shown is not touched";
+    QTest::keyClick(above, Qt::Key_Space);
+    EXPECT_EQ(table->model()->rowCount(), all);
+    auto* number = driven_.find<QLineEdit>("findModule");
+    QTest::keyClicks(number, QString::number(planted.begin()->value));
+    EXPECT_LT(table->model()->rowCount(), all);
+    EXPECT_GE(table->model()->rowCount(), 1);
 }
 
 TEST(Interrupted, ScanningFromTheViewsPageScans) {

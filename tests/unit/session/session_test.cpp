@@ -45,6 +45,102 @@ TEST(Session, UndoingAllGivesTheStateBeforeAndRedoingAllTheStateAfter) {
     }
 }
 
+// Whatever is measured and decided in whatever order: at every step back and forth the same counts as did then.
+TEST(Session, WhatIsMeasuredIsUndoneLikeWhatIsDecided) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        Random random(seed);
+        Session session;
+        session.load(smallRecording(seed));
+        const Measured first = session.measured();
+        const auto counting = [&] { return textOf(measurementsOf(session.measured(), session.decisions())); };
+        std::vector<std::string> states{counting()};
+        for (int i = 0; i < 40; ++i) {
+            const int before = session.undoStack().count();
+            ScannedView view = first.views[random.index(first.views.size())];
+            switch (random.index(5)) {
+                case 0:
+                    session.addPose({first.gravity.begin(), first.gravity.begin() + 5});
+                    break;
+                case 1:
+                    session.addView(view);
+                    break;
+                case 2:
+                    view.decoded.found.resize(1 + random.index(view.decoded.found.size()));
+                    session.replaceView(view);
+                    break;
+                default:
+                    session.decide("something", [&](Decisions& decisions) {
+                        decideSomething(session.measured(), random, decisions);
+                    });
+            }
+            if (session.undoStack().count() > before)
+                states.push_back(counting());
+        }
+        ASSERT_EQ(static_cast<std::size_t>(session.undoStack().count()) + 1, states.size());
+        const std::size_t readings = session.measured().gravity.size();
+        const std::size_t views = session.measured().views.size();
+        for (int i = 0; i < 60; ++i) {
+            session.undoStack().setIndex(i == 0 ? 0 : static_cast<int>(random.index(states.size())));
+            ASSERT_EQ(counting(), states[static_cast<std::size_t>(session.undoStack().index())]) << seed << ' ' << i;
+            ASSERT_EQ(session.measured().gravity.size(), readings) << "nothing is lost";
+            ASSERT_EQ(session.measured().views.size(), views);
+        }
+    }
+}
+
+TEST(Session, ACaptureThatWasUndoneStaysUndoneWhateverElseIs) {
+    Session session;
+    session.load(smallRecording(1));
+    const auto poses = [&] { return posesOf(session.measured(), session.decisions()); };
+    const auto atFirst = poses();
+    session.decide("drop", [&](Decisions& decisions) { decisions.droppedPoses.insert(atFirst.front()); });
+    const int pose = session.addPose({session.measured().gravity.front()});
+    EXPECT_EQ(session.undoStack().undoText(), QStringLiteral("Capture pose %1").arg(pose + 1));
+    session.undoStack().undo();
+    // What is decided now ends what could be redone.
+    session.decide("reject a cable", [&](Decisions& decisions) {
+        decisions.links[LinkKey::of(session.measured().skin.links.front())] = LinkKind::Cable;
+    });
+    while (session.undoStack().canUndo())
+        session.undoStack().undo();
+    EXPECT_EQ(poses(), atFirst);
+    session.decide("take it back", [&](Decisions& decisions) { decisions.droppedPoses.erase(pose); });
+    EXPECT_EQ(poses().back(), pose) << "it was measured, and is there";
+}
+
+TEST(Session, WhatWasDecidedAboutAViewDoesNotHoldForTheNextScanOfIt) {
+    Session session;
+    session.load(smallRecording(1));
+    const ScannedView first = session.measured().views[1];
+    const ModuleId module = first.decoded.found.front().module;
+    const auto other = session.measured().views[0].name;
+    session.decide("reject", [&](Decisions& decisions) {
+        decisions.detections[{first.name, module}] = {first.name, module, "rejected", "a lamp"};
+        decisions.detections[{other, module}] = {other, module, "rejected", ""};
+        decisions.droppedViews.insert(first.name);
+    });
+    const std::string decided = textOf(session.decisions());
+    ScannedView second = first;
+    second.pictures = std::make_shared<const Pictures>(3);
+    second.decoded.found.pop_back();
+    const QSignalSpy scanned(&session, &Session::viewsChanged);
+    const QSignalSpy told(&session, &Session::decisionsChanged);
+    session.replaceView(second);
+    EXPECT_EQ(session.undoStack().undoText(), QStringLiteral("Scan %1 again").arg(first.name.c_str()));
+    EXPECT_EQ(session.measured().views[1].pictures, second.pictures);
+    EXPECT_EQ(session.decisions().detections.size(), 1U) << "that of the other view holds";
+    EXPECT_TRUE(session.decisions().droppedViews.empty()) << "who scans again wants it to count";
+    session.undoStack().undo();
+    EXPECT_EQ(session.measured().views[1].pictures, first.pictures);
+    EXPECT_EQ(textOf(session.measured().views[1].decoded), textOf(first.decoded));
+    EXPECT_EQ(textOf(session.decisions()), decided);
+    session.undoStack().redo();
+    EXPECT_EQ(session.measured().views[1].pictures, second.pictures);
+    EXPECT_EQ(session.decisions().detections.size(), 1U);
+    EXPECT_EQ(scanned.count(), 3);
+    EXPECT_EQ(told.count(), 3);
+}
+
 TEST(Session, EveryChangeRaisesTheRevisionAndIsTold) {
     Session session;
     session.load(smallRecording(1));

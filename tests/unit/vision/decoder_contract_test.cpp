@@ -34,6 +34,7 @@ TEST(Decoder, ModulesThatShareAWordAreNotGuessed) {
         const Undetected* u = missing(view, scan.leds[twin].module);
         ASSERT_NE(u, nullptr);
         EXPECT_EQ(u->verdict, DetectionVerdict::Ambiguous);
+        EXPECT_EQ(u->cause, Undetected::Cause::Alike);
     }
 }
 
@@ -50,6 +51,7 @@ TEST(Decoder, ModulesNeverOrAlwaysLitAreReported) {
     ASSERT_NE(never, nullptr);
     EXPECT_EQ(never->verdict, DetectionVerdict::NotFound);
     EXPECT_THAT(never->reason, HasSubstr("never lit"));
+    EXPECT_EQ(never->cause, Undetected::Cause::NeverBlinked);
 }
 
 TEST(Decoder, ManyLedsLitInColoursAtOnce) {

@@ -70,6 +70,7 @@ TEST_P(AnyScheme, ASpotFarWiderThanAllOthersIsNoLed) {
     const Undetected* reason = missing(view, wide.module);
     ASSERT_NE(reason, nullptr);
     EXPECT_THAT(reason->reason, HasSubstr("shape"));
+    EXPECT_EQ(reason->cause, Undetected::Cause::NotAnLed);
 }
 
 TEST_P(AnyScheme, BrightGroundUnderLedsIsNoShorterExposure) {
@@ -95,6 +96,28 @@ TEST_P(AnyScheme, FindsFaintLeds) {
     }
     // One at a time, noise in another module's only lit frame can come near enough to cast doubt.
     EXPECT_GE(found, GetParam() == Scheme::Coded ? all : all * 98 / 100);
+}
+
+TEST_P(AnyScheme, WhatIsLostInNoiseIsTooWeakOrOutOfSight) {
+    using Cause = Undetected::Cause;
+    std::size_t weak = 0;
+    std::size_t lost = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        ScanPainter scan = scanOf(seed, 12);
+        scan.readNoise = 6;
+        for (PaintedLed& led : scan.leds)
+            led.peak = 25;
+        for (const Undetected& u : decode(scan).undetected) {
+            EXPECT_THAT(u.cause, ::testing::AnyOf(Cause::TooWeak, Cause::OutOfSight, Cause::Alike)) << u.reason;
+            weak += u.cause == Cause::TooWeak ? 1 : 0;
+            ++lost;
+        }
+    }
+    // Lit once, they nearly drown; what blinks all the time is found or far below what is looked at.
+    if (GetParam() == Scheme::OneAtATime) {
+        EXPECT_GT(lost, 10U);
+        EXPECT_GT(weak, 0U);
+    }
 }
 
 TEST_P(AnyScheme, FindsBrightClippedLeds) {
@@ -124,6 +147,7 @@ TEST_P(AnyScheme, MissesOnlyCoveredModules) {
             const Undetected* u = missing(view, scan.leds[covered].module);
             ASSERT_NE(u, nullptr);
             EXPECT_EQ(u->verdict, DetectionVerdict::NotFound);
+            EXPECT_EQ(u->cause, Undetected::Cause::OutOfSight);
         }
     }
 }
@@ -216,6 +240,7 @@ TEST_P(AnyScheme, StrongReflectionIsNotDecided) {
     ASSERT_NE(u, nullptr);
     EXPECT_EQ(u->verdict, DetectionVerdict::Ambiguous);
     EXPECT_THAT(u->reason, HasSubstr("two spots"));
+    EXPECT_EQ(u->cause, Undetected::Cause::Reflected);
 }
 
 TEST_P(AnyScheme, HandsOnAllSpotsThatMayBeTheLed) {

@@ -113,6 +113,7 @@ TEST(PaperDetector, TwoBlobsAreNone) {
     const ViewDetections view = detect(scan);
     EXPECT_TRUE(view.found.empty());
     EXPECT_EQ(view.undetected.at(0).reason, "2 blobs instead of one");
+    EXPECT_EQ(view.undetected.at(0).cause, Undetected::Cause::Reflected);
     PaperDetectorOptions options;
     options.maxBlobs = 2;
     const ViewDetections larger = detect(scan, options);

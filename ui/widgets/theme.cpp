@@ -1,7 +1,8 @@
 #include "ui/widgets/theme.h"
 
 #include <QGuiApplication>
-#include <array>
+
+#include "ui/palette.h"
 
 namespace skincal {
 
@@ -75,10 +76,7 @@ QString Theme::styleSheet() const {
 }
 
 QColor patchTint(unsigned patch) {
-    // Okabe and Ito, without black.
-    static constexpr std::array<const char*, 8> kTints{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
-                                                       "#56b4e9", "#d55e00", "#f0e442", "#8c8c99"};
-    return QColor(kTints.at(patch % kTints.size()));
+    return QColor::fromRgb(kKinds.at(patch % kKinds.size()));
 }
 
 }  // namespace skincal

@@ -156,6 +156,7 @@ void ResultPage::refresh() {
     reasons_->clear();
     if (!solution) {
         verdict_->setText(tr("No body yet"));
+        verdict_->setStyleSheet({});  // that of the verdict before
         reason_->setText(tr("Capture poses and scan a view first."));
         return;
     }

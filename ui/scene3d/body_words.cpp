@@ -89,7 +89,7 @@ Legend BodyWords::legend(const BodyModel& body, const SceneLayout& layout, Colou
                                            [](const auto& value) { return value.has_value(); });
     switch (mode) {
         case ColourMode::Patch:
-            legend.title = tr("Patches and their modules");
+            legend.title = tr("Modules per patch");
             for (std::size_t i = 0; i < std::min(kMaxPatches, body.patches.size()); ++i) {
                 const BodyPatch& patch = body.patches[i];
                 const Rgb colour = toRgb(patchColour(patch.id));
@@ -115,11 +115,11 @@ Legend BodyWords::legend(const BodyModel& body, const SceneLayout& layout, Colou
             unknown(tr("in no picture"));
             break;
         case ColourMode::ViewCount:
-            legend.title = tr("Pictures of each module");
+            legend.title = tr("Views of each module");
             bar(number(values->low), number(values->high));
             break;
         case ColourMode::LastView:
-            legend.title = tr("Last picture of each module");
+            legend.title = tr("Last view of each module");
             if (any)
                 bar(QString::fromStdString(body.views.front().name), QString::fromStdString(body.views.back().name));
             unknown(tr("in no picture"));

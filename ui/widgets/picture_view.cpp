@@ -148,7 +148,11 @@ void PictureView::paintFocus(QPainter& painter) const {
             painter.setPen(QPen(colour, width));
             painter.drawRoundedRect(box, 4, 4);
         }
-        painter.drawText(box.topRight() + QPointF(4, 4), QString::number(place.module.value));
+        const QString number = QString::number(place.module.value);
+        const QRectF ground(box.topRight() + QPointF(3, 0),
+                            QSizeF(fontMetrics().horizontalAdvance(number) + 8, fontMetrics().height() + 2));
+        painter.fillRect(ground, QColor(0, 0, 0, 190));
+        painter.drawText(ground, Qt::AlignCenter, number);
     }
 }
 

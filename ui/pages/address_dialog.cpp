@@ -30,7 +30,9 @@ AddressDialog::AddressDialog(QWidget* parent) : QDialog(parent), where_(new QLin
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
     QPushButton* use = buttons->button(QDialogButtonBox::Ok);
     use->setText(tr("Use it"));
+    use->setToolTip(tr("Put it among the skins to choose from, and choose it"));
     use->setEnabled(false);
+    buttons->button(QDialogButtonBox::Cancel)->setToolTip(tr("Stay with the skin that is chosen"));
     column->addWidget(buttons);
     connect(where_, &QLineEdit::textChanged, this, [this, use](const QString& text) {
         const auto parsed = parseLineAddress(text);

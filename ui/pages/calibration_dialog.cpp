@@ -12,6 +12,7 @@
 
 #include "ui/pages/board_form.h"
 #include "ui/pages/lens_card.h"
+#include "ui/presenters/board_sign.h"
 #include "ui/print/board_pdf.h"
 #include "ui/widgets/board_picture.h"
 #include "ui/widgets/image_conversion.h"
@@ -185,7 +186,7 @@ void CalibrationDialog::showResiduals() {
     const auto& calibration = presenter_.calibration();
     if (calibration) {
         for (std::size_t i = 0; i < calibration->boards.size(); ++i) {
-            ResidualPlot::Cloud cloud{boardTint(i), {}, calibration->boards[i].used};
+            ResidualPlot::Cloud cloud{boardSign(i), {}, calibration->boards[i].used};
             for (const Vector2d& r : calibration->boards[i].residuals)
                 cloud.residuals.emplace_back(r.x(), r.y());
             clouds.push_back(std::move(cloud));
@@ -217,7 +218,7 @@ void CalibrationDialog::showChosen() {
     plot_->setSelected(board);
     const auto& views = presenter_.boards().views();
     if (board && *board < views.size())
-        picture_->setChosen(pixelsOf(views[*board]), boardTint(*board));
+        picture_->setChosen(pixelsOf(views[*board]), boardSign(*board).colour);
     else
         picture_->setChosen({}, {});
 }

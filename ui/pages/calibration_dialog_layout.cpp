@@ -76,6 +76,7 @@ QWidget* CalibrationDialog::buildBoards() {
     boards_->setSelectionBehavior(QAbstractItemView::SelectRows);
     boards_->setSelectionMode(QAbstractItemView::SingleSelection);
     boards_->setShowGrid(false);
+    boards_->setTabKeyNavigation(false);
     boards_->verticalHeader()->setVisible(false);
     boards_->verticalHeader()->setDefaultSectionSize(22);
     boards_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);

@@ -54,9 +54,11 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
         box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
         box->setMinimumContentsLength(kShownLetters);
     }
+    formats_->setObjectName(QStringLiteral("resolutions"));
     formats_->setAccessibleName(tr("Resolution"));
     formats_->setToolTip(tr("Size and rate of the pictures; intrinsics hold for one size"));
     exposure_->setRange(0, kSliderSteps);
+    exposure_->setObjectName(QStringLiteral("exposure"));
     exposure_->setAccessibleName(tr("Exposure"));
     exposure_->setToolTip(tr("Shorten it until LEDs are bright and not clipped"));
     top->addWidget(devices_, 4);
@@ -73,6 +75,7 @@ CameraPage::CameraPage(Workbench& workbench, ScanPresenter& scan, QWidget* paren
     auto* below = new QHBoxLayout;
     below->addWidget(histogram_, 1);
     auto* right = new QVBoxLayout;
+    intrinsics_->setObjectName(QStringLiteral("intrinsics"));
     intrinsics_->setWordWrap(true);
     right->addWidget(intrinsics_);
     controls_->setObjectName(QStringLiteral("controls"));

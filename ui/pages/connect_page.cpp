@@ -48,6 +48,9 @@ ConnectPage::ConnectPage(Workbench& workbench, ConnectPresenter& presenter, QWid
     network_->setPlaceholder(tr("Modules appear here once the skin is connected."));
     links_->setModel(&presenter.links());
     links_->setAccessibleName(tr("Links"));
+    links_->setToolTip(tr(
+        "Every link, whether it was judged a cable or joins neighbours, and why: a wrong verdict puts patches in the "
+        "wrong place. Select one to overrule it."));
     links_->setSelectionBehavior(QAbstractItemView::SelectRows);
     links_->setSelectionMode(QAbstractItemView::SingleSelection);
     links_->verticalHeader()->hide();

@@ -19,14 +19,14 @@ namespace {
 constexpr int kTick_ms = 10;  // of the slider
 constexpr double kSpan_s = std::chrono::duration<double>(DemoPresenter::Time(TactileHistory::kSpan)).count();
 
-QColor colourOf(std::size_t place) {
+}  // namespace
+
+QColor traceColour(std::size_t place, bool isDark) {
     // The bright ones first: curves are thin.
     constexpr std::array<unsigned, 8> kOrder{4, 1, 2, 3, 0, 5, 6, 7};
-    const QColor colour = patchTint(kOrder.at(static_cast<std::size_t>(place) % kOrder.size()));
-    return Theme::current().isDark ? colour : colour.darker(125);
+    const QColor colour = patchTint(kOrder.at(place % kOrder.size()));
+    return isDark ? colour : colour.darker(125);
 }
-
-}  // namespace
 
 DemoPage::DemoPage(DemoPresenter& presenter, QWidget* parent)
     : Page(tr("Live demo"),
@@ -195,8 +195,8 @@ void DemoPage::showTraces() {
     std::vector<TracePlot::Line> lines;
     for (auto& [place, trace] : presenter_.traces(plot_->columns())) {
         lines.push_back({tr("Module %1").arg(trace.module.value),
-                         trace.shown ? textOf(*trace.shown, quantity) : QString(), colourOf(place),
-                         std::move(trace.ranges)});
+                         trace.shown ? textOf(*trace.shown, quantity) : QString(),
+                         traceColour(place, Theme::current().isDark), std::move(trace.ranges)});
     }
     plot_->setLines(std::move(lines));
 }

@@ -14,6 +14,9 @@ namespace skincal {
 class ContactTable;
 class TracePlot;
 
+/// Of the curve in one of the plot's places.
+[[nodiscard]] QColor traceColour(std::size_t place, bool isDark);
+
 class DemoPage : public Page {
     Q_OBJECT
   public:

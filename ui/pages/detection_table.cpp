@@ -94,6 +94,8 @@ void DetectionTable::setUpTable() {
     table_->setModel(filter_);
     table_->setObjectName(QStringLiteral("detections"));
     table_->setAccessibleName(tr("Modules in this view"));
+    table_->setToolTip(
+        tr("What became of each module in this view, and why; select some to look closer or to reject them"));
     table_->setSortingEnabled(true);
     table_->sortByColumn(DetectionModel::Residual, Qt::DescendingOrder);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);

@@ -34,6 +34,7 @@ ExportPage::ExportPage(ExportPresenter& presenter, QWidget* parent)
         formats_->addItem(format.name);
     formats_->setObjectName(QStringLiteral("formats"));
     formats_->setAccessibleName(tr("Formats"));
+    formats_->setToolTip(tr("Who is to read the file decides; beside it stand its units and frames"));
     formats_->setMaximumWidth(150);
     formats_->setSpacing(3);
     formats_->setCurrentRow(0);
@@ -43,6 +44,7 @@ ExportPage::ExportPage(ExportPresenter& presenter, QWidget* parent)
     preview_->setReadOnly(true);
     preview_->setLineWrapMode(QPlainTextEdit::NoWrap);
     preview_->setAccessibleName(tr("Preview of the file"));
+    preview_->setToolTip(tr("How the file will begin, to see that it is what you need before it is written"));
     QFont fixed(QStringLiteral("monospace"));
     fixed.setStyleHint(QFont::Monospace);
     fixed.setPointSize(9);
@@ -53,6 +55,7 @@ ExportPage::ExportPage(ExportPresenter& presenter, QWidget* parent)
     auto* target = new QHBoxLayout;
     file_->setObjectName(QStringLiteral("file"));
     file_->setAccessibleName(tr("File"));
+    file_->setToolTip(tr("Where the file goes; its ending is that of the format"));
     file_->setText(suggestedFile(presenter.formats().front().suffix));
     auto* browse = new QPushButton(tr("Choose …"));
     browse->setToolTip(tr("Choose where to write the file"));

@@ -91,7 +91,9 @@ MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
     verdict_->setWordWrap(true);
     busy_->setRange(0, 0);
     busy_->setAccessibleName(tr("Comparing"));
+    busy_->setToolTip(tr("The body is being laid on the mesh; you can go on meanwhile"));
 
+    figures_->setToolTip(tr("How well body and mesh agree, and by how much all modules stand off together"));
     figures_->setColumnCount(2);
     figures_->horizontalHeader()->hide();
     figures_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
@@ -111,6 +113,7 @@ MeshPanel::MeshPanel(MeshPresenter& presenter, QWidget* parent)
     modules_->setToolTip(tr("The modules that lie farthest off come first; select one to see it in the 3D view"));
     doubts_->setObjectName(QStringLiteral("meshDoubts"));
     doubts_->setAccessibleName(tr("What to know about the comparison"));
+    doubts_->setToolTip(tr("What makes the comparison doubtful, such as another pose that fits as well"));
     doubts_->setWordWrap(true);
     doubts_->setSelectionMode(QAbstractItemView::NoSelection);
     doubts_->setSpacing(2);

@@ -15,6 +15,9 @@ class Page : public QWidget {
     /// The page is shown or not any more: devices run only while somebody looks.
     virtual void setActive(bool active) { Q_UNUSED(active) }
 
+    /// What the keys go to when the page is shown; where there is none, to the highlighted button or the first control.
+    [[nodiscard]] virtual QWidget* mainControl() const { return nullptr; }
+
     /// The least that it takes: where there is less, it scrolls.
     [[nodiscard]] int heightForWidth(int width) const override;
 

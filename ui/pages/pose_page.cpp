@@ -56,6 +56,7 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
     rest_->setToolTip(tr("Fills while the body rests; then its pose is captured"));
     side->addWidget(rest_);
     side->addWidget(movement_);
+    automatic_->setObjectName(QStringLiteral("automatic"));
     automatic_->setChecked(presenter.isAutomatic());
     automatic_->setToolTip(tr("Otherwise only the button and the space bar capture"));
     side->addWidget(automatic_);
@@ -84,6 +85,10 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
 
     poses_->setModel(&presenter.poses());
     poses_->setAccessibleName(tr("Captured poses"));
+    poses_->setObjectName(QStringLiteral("poses"));
+    poses_->setToolTip(tr(
+        "What each pose adds and how well it agrees with the others: select one to see the modules that disagree, and "
+        "to drop it"));
     poses_->setSelectionBehavior(QAbstractItemView::SelectRows);
     poses_->setSelectionMode(QAbstractItemView::SingleSelection);
     poses_->verticalHeader()->hide();
@@ -131,6 +136,10 @@ void PosePage::setActive(bool active) {
     refresh();
     // Its marks in 3D mean nothing to other pages.
     active ? inspectSelected() : showInBody({});
+}
+
+QWidget* PosePage::mainControl() const {
+    return capture_;
 }
 
 void PosePage::showInBody(std::vector<ModuleId> modules) {

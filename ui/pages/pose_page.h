@@ -19,6 +19,7 @@ class PosePage : public Page {
     explicit PosePage(PosePresenter& presenter, QWidget* parent = nullptr);
 
     void setActive(bool active) override;
+    [[nodiscard]] QWidget* mainControl() const override;
     void selectPose(int pose);
 
   signals:

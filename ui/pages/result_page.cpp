@@ -56,6 +56,7 @@ ResultPage::ResultPage(Workbench& workbench, MeshPresenter& mesh, QWidget* paren
     meshPanel_ = panel;
     tabs_->setObjectName(QStringLiteral("resultTabs"));
     tabs_->setAccessibleName(tr("What to look at"));
+    tabs_->setToolTip(tr("Ways to judge the body: by its figures, on the pictures, against a surface"));
     const auto add = [&](QWidget* widget, const QString& name, const QString& what) {
         tabs_->setTabToolTip(tabs_->addTab(widget, name), what);
     };
@@ -109,7 +110,9 @@ QWidget* ResultPage::buildQuality() {
     column->addWidget(figures_, 3);
     column->addWidget(mutedLabel(tr("What to know about it:")));
     reasons_->setWordWrap(true);
+    reasons_->setObjectName(QStringLiteral("reasons"));
     reasons_->setAccessibleName(tr("Reasons for the verdict"));
+    reasons_->setToolTip(tr("What is missing or disagrees, and so keeps the body from being better"));
     column->addWidget(reasons_, 1);
     return quality;
 }
@@ -153,6 +156,7 @@ void ResultPage::refresh() {
     reasons_->clear();
     if (!solution) {
         verdict_->setText(tr("No body yet"));
+        verdict_->setStyleSheet({});  // that of the verdict before
         reason_->setText(tr("Capture poses and scan a view first."));
         return;
     }

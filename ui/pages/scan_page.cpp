@@ -65,6 +65,8 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     top->addStretch();
     progress_->setObjectName(QStringLiteral("scanProgress"));
     progress_->setAccessibleName(tr("Progress of the scan"));
+    progress_->setToolTip(
+        tr("How many of this view's pictures are taken; hold camera and body still until it is full"));
     body().addLayout(top);
     body().addWidget(status_);
 
@@ -86,6 +88,7 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     body().addLayout(row);
 
     picture_->setPlaceholder(tr("No picture yet."));
+    picture_->setToolTip(tr("Rings: spots that were found; crossed ones do not count. Click one to see why."));
     auto* splitter = new QSplitter(Qt::Vertical);
     splitter->addWidget(picture_);
     splitter->addWidget(table_);

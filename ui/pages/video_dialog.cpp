@@ -22,6 +22,7 @@ VideoDialog::VideoDialog(QWidget* parent) : QDialog(parent), where_(new QLineEdi
     auto* row = new QHBoxLayout;
     where_->setObjectName(QStringLiteral("video"));
     where_->setAccessibleName(tr("File or address"));
+    where_->setToolTip(tr("Pictures are taken from there as if it were a webcam"));
     where_->setPlaceholderText(QStringLiteral("rtsp://192.168.1.20/stream"));
     row->addWidget(where_, 1);
     auto* browse = new QPushButton(tr("Browse …"));
@@ -30,7 +31,9 @@ VideoDialog::VideoDialog(QWidget* parent) : QDialog(parent), where_(new QLineEdi
     column->addLayout(row);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
     QPushButton* open = buttons->button(QDialogButtonBox::Open);
+    open->setToolTip(tr("Take pictures from there"));
     open->setEnabled(false);
+    buttons->button(QDialogButtonBox::Cancel)->setToolTip(tr("Stay with the camera that is chosen"));
     column->addWidget(buttons);
     connect(where_, &QLineEdit::textChanged, this, [this, open] { open->setEnabled(url().has_value()); });
     connect(browse, &QPushButton::clicked, this, [this] {

@@ -51,6 +51,9 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview
     hint_->setWordWrap(true);
     body().addWidget(hint_);
     picture_->setPlaceholder(tr("No picture: choose a camera first."));
+    picture_->setToolTip(
+        tr("What the camera sees now. Rings: spots of the patches, in the patch's colour, that a scan from here would "
+           "find."));
     auto* splitter = new QSplitter(Qt::Vertical);
     splitter->addWidget(picture_);
     splitter->addWidget(graph_);

@@ -2,14 +2,9 @@
 
 #include <cmath>
 
-namespace skincal {
+#include "ui/presenters/board_sign.h"
 
-QColor boardTint(std::size_t board) {
-    // Hues that go round by the golden angle never come close to their neighbours.
-    constexpr double kGolden = 0.381966;
-    const double hue = 0.58 + kGolden * static_cast<double>(board);
-    return QColor::fromHslF(static_cast<float>(hue - std::floor(hue)), 0.62F, 0.55F);
-}
+namespace skincal {
 
 BoardModel::BoardModel(const BoardPresenter& presenter, QObject* parent)
     : QAbstractTableModel(parent), presenter_(presenter), rows_(presenter.boards().views().size()) {
@@ -75,7 +70,7 @@ QVariant BoardModel::data(const QModelIndex& index, int role) const {
         case Qt::DisplayRole:
             return textAt(board, index.column());
         case Qt::DecorationRole:
-            return index.column() == Board ? QVariant(boardTint(board)) : QVariant();
+            return index.column() == Board ? QVariant(pictureOf(boardSign(board))) : QVariant();
         case Qt::TextAlignmentRole:
             return static_cast<int>(Qt::AlignVCenter | (index.column() == Board ? Qt::AlignLeft : Qt::AlignRight));
         case Qt::ToolTipRole: {

@@ -1,14 +1,10 @@
 #pragma once
 
 #include <QAbstractTableModel>
-#include <QColor>
 
 #include "ui/presenters/board_presenter.h"
 
 namespace skincal {
-
-/// Colour by which a board is known in list and plots, told from its neighbours on light and dark.
-[[nodiscard]] QColor boardTint(std::size_t board);
 
 /// The boards that were taken, a row each.
 class BoardModel : public QAbstractTableModel {

@@ -19,18 +19,10 @@
 #include <map>
 #include <vector>
 
+#include "ui/palette.h"
+
 namespace skincal {
 namespace {
-
-/// Okabe and Ito's palette, less black.
-constexpr std::array<std::array<double, 3>, 8> kPalette{{{0.00, 0.45, 0.70},
-                                                         {0.90, 0.62, 0.00},
-                                                         {0.00, 0.62, 0.45},
-                                                         {0.80, 0.47, 0.65},
-                                                         {0.34, 0.71, 0.91},
-                                                         {0.84, 0.37, 0.00},
-                                                         {0.94, 0.89, 0.26},
-                                                         {0.55, 0.55, 0.60}}};
 
 std::map<std::string, const ModuleTemplate*> templatesByName(const BodyModel& body) {
     std::map<std::string, const ModuleTemplate*> byName;
@@ -85,7 +77,8 @@ std::optional<Vector3d> firstCameraUp(const BodyModel& body) {
 }
 
 std::array<double, 3> patchColour(PatchId patch) {
-    return kPalette.at(patch.value % kPalette.size());
+    const std::uint32_t colour = kKinds.at(patch.value % kKinds.size());
+    return {(colour >> 16 & 0xff) / 255.0, (colour >> 8 & 0xff) / 255.0, (colour & 0xff) / 255.0};
 }
 
 vtkSmartPointer<vtkPolyData> boardsOf(const BodyModel& body) {

@@ -131,11 +131,12 @@ std::vector<SceneLabel> BodyViewWidget::labels() const {
                 labels.push_back({view.T_body_camera->translation(), QString::fromStdString(view.name), false, -14});
         }
     }
-    if (selected_.size() <= kMaxLabels) {
-        for (const ModuleId id : selected_) {
-            if (const ShownModule* module = layout_.find(id))
-                labels.push_back({module->T_s_u.translation(), BodyWords::module(id), true, -16});
-        }
+    std::vector<ModuleId> named = selected_.size() <= kMaxLabels ? selected_ : std::vector<ModuleId>();
+    if (current_ && areKeysAt(*current_) && std::find(named.begin(), named.end(), *current_) == named.end())
+        named.push_back(*current_);
+    for (const ModuleId id : named) {
+        if (const ShownModule* module = layout_.find(id))
+            labels.push_back({module->T_s_u.translation(), BodyWords::module(id), true, -16});
     }
     if (layout_.anyPlaced && guideCamera_)
         labels.push_back({guideCamera_->translation(), tr("Put the camera here"), true, -18});
@@ -170,12 +171,13 @@ void BodyViewWidget::updateWords() {
         content.measure = measurePoints();
         if (measuring_ && content.measure.size() < 2)
             content.caption =
-                content.measure.empty() ? tr("Measure: click on a cell.") : tr("Measure: click on another cell.");
+                content.measure.empty() ? tr("Measure: click on a module.") : tr("Measure: click on another module.");
     }
     overlay_->setContent(std::move(content));
     scene_->requestDraw();
     setAccessibleName(tr("Body in 3D"));
-    setAccessibleDescription(BodyWords::description(body_.get(), layout_));
+    setAccessibleDescription(current_ && areKeysAt(*current_) ? BodyWords::module(*current_)
+                                                              : BodyWords::description(body_.get(), layout_));
     setToolTip(BodyWords::hint());
 }
 

@@ -17,14 +17,39 @@ namespace skincal {
 void BodyViewWidget::click(const QPointF& position) {
     setFocus(Qt::MouseFocusReason);
     const auto module = moduleAt(position);
-    if (measuring_) {
-        if (module)
-            measureTo(*module);
-    } else if (module) {
-        emit moduleClicked(*module);
-    } else {
+    if (module)
+        choose(*module);
+    else if (!measuring_)
         emit nothingClicked();
-    }
+}
+
+void BodyViewWidget::choose(ModuleId module) {
+    if (measuring_)
+        measureTo(module);
+    else
+        emit moduleClicked(module);
+}
+
+void BodyViewWidget::stepModules(int way) {
+    std::vector<ModuleId> modules;
+    for (const ShownModule& module : layout_.modules)
+        modules.push_back(module.id);
+    if (modules.empty())
+        return;
+    std::sort(modules.begin(), modules.end());
+    // One that has gone leads to its neighbours by number.
+    const std::optional<ModuleId> from = current_                ? current_
+                                         : selected_.size() == 1 ? std::optional(selected_.front())
+                                                                 : std::nullopt;
+    if (!from)
+        current_ = way > 0 ? modules.front() : modules.back();
+    else if (way > 0)
+        current_ = *std::prev(modules.end()) > *from ? *std::upper_bound(modules.begin(), modules.end(), *from) : *from;
+    else if (modules.front() < *from)
+        current_ = *std::prev(std::lower_bound(modules.begin(), modules.end(), *from));
+    focusFrame_ = true;
+    outlineSelected();
+    updateWords();
 }
 
 void BodyViewWidget::measureTo(ModuleId module) {
@@ -85,6 +110,15 @@ void BodyViewWidget::keyPressEvent(QKeyEvent* event) {
             return event->modifiers().testFlag(Qt::ShiftModifier) ? fitEverything() : fitView();
         case Qt::Key_Home:
             return resetView();
+        case Qt::Key_PageUp:
+            return stepModules(-1);
+        case Qt::Key_PageDown:
+            return stepModules(1);
+        case Qt::Key_Return:
+        case Qt::Key_Enter:
+            if (current_ && layout_.find(*current_) != nullptr)
+                return choose(*current_);
+            break;
         case Qt::Key_Escape:
             if (!measured_.empty()) {
                 measured_.clear();
@@ -100,11 +134,13 @@ void BodyViewWidget::keyPressEvent(QKeyEvent* event) {
 void BodyViewWidget::focusInEvent(QFocusEvent* event) {
     // Those who come with the mouse know where they are.
     focusFrame_ = event->reason() != Qt::MouseFocusReason && event->reason() != Qt::ActiveWindowFocusReason;
+    outlineSelected();
     updateWords();
 }
 
 void BodyViewWidget::focusOutEvent(QFocusEvent* /*event*/) {
     focusFrame_ = false;
+    outlineSelected();
     updateWords();
 }
 

@@ -77,7 +77,7 @@ void BodyViewWidget::setBody(std::shared_ptr<const BodyModel> body) {
     const auto gone = [&](ModuleId id) { return layout_.find(id) == nullptr; };
     if (std::any_of(measured_.begin(), measured_.end(), gone))
         measured_.clear();
-    actors_->setSelected(layout_, selected_);
+    outlineSelected();
     actors_->setCamerasShown(cameras_ && !layout_.modules.empty());
     updateGuides();
     updateEllipsoids();
@@ -166,8 +166,7 @@ void BodyViewWidget::setSelected(std::vector<ModuleId> modules) {
     if (modules == selected_)
         return;
     selected_ = std::move(modules);
-    actors_->setSelected(layout_, selected_);
-    scene_->requestDraw();
+    outlineSelected();
     updateWords();
 }
 
@@ -176,6 +175,14 @@ void BodyViewWidget::setContacts(std::vector<ContactMark> contacts) {
         return;
     contacts_ = std::move(contacts);
     actors_->setContacts(contacts_);
+    scene_->requestDraw();
+}
+
+void BodyViewWidget::outlineSelected() {
+    std::vector<ModuleId> outlined = selected_;
+    if (current_ && areKeysAt(*current_))
+        outlined.push_back(*current_);
+    actors_->setSelected(layout_, outlined);
     scene_->requestDraw();
 }
 

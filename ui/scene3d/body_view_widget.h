@@ -30,8 +30,8 @@ class SceneWidget;
 /// or the first patch finds its place.
 ///
 /// Mouse: drag turns, shift or the middle button shifts, wheel or the right button zoom, a click picks a module, a
-/// double click fits the view. Keys: arrows turn, + and - zoom, F fits the view, Home looks from the front, Escape
-/// forgets a measurement.
+/// double click fits the view. Keys: arrows turn, + and - zoom, F fits the view, Home looks from the front; Page Up and
+/// Page Down go from module to module, Return does there what a click does; Escape forgets a measurement.
 class BodyViewWidget : public QWidget {
     Q_OBJECT
   public:
@@ -128,6 +128,11 @@ class BodyViewWidget : public QWidget {
     /// Shaders are compiled where a thing is first drawn: here, before there is a window to wait for, all of them.
     void warmUp();
     void click(const QPointF& position);
+    void choose(ModuleId module);
+    /// The keys go on by so many modules.
+    void stepModules(int way);
+    void outlineSelected();
+    [[nodiscard]] bool areKeysAt(ModuleId module) const { return focusFrame_ && current_ == module; }
     void measureTo(ModuleId module);
     void findValues();
     void recolour();
@@ -161,7 +166,8 @@ class BodyViewWidget : public QWidget {
     std::optional<Isometry3d> guideCamera_;
     std::optional<Vector3d> guideUp_;
     std::vector<ModuleId> selected_;
-    std::vector<ModuleId> measured_;  ///< at most two
+    std::optional<ModuleId> current_;  ///< where the keys are
+    std::vector<ModuleId> measured_;   ///< at most two
     std::vector<ContactMark> contacts_;
 };
 

@@ -89,7 +89,7 @@ Legend BodyWords::legend(const BodyModel& body, const SceneLayout& layout, Colou
                                            [](const auto& value) { return value.has_value(); });
     switch (mode) {
         case ColourMode::Patch:
-            legend.title = tr("Patches and their cells");
+            legend.title = tr("Modules per patch");
             for (std::size_t i = 0; i < std::min(kMaxPatches, body.patches.size()); ++i) {
                 const BodyPatch& patch = body.patches[i];
                 const Rgb colour = toRgb(patchColour(patch.id));
@@ -115,11 +115,11 @@ Legend BodyWords::legend(const BodyModel& body, const SceneLayout& layout, Colou
             unknown(tr("in no picture"));
             break;
         case ColourMode::ViewCount:
-            legend.title = tr("Pictures of each cell");
+            legend.title = tr("Views of each module");
             bar(number(values->low), number(values->high));
             break;
         case ColourMode::LastView:
-            legend.title = tr("Last picture of each cell");
+            legend.title = tr("Last view of each module");
             if (any)
                 bar(QString::fromStdString(body.views.front().name), QString::fromStdString(body.views.back().name));
             unknown(tr("in no picture"));
@@ -146,7 +146,7 @@ QString BodyWords::ellipsoids(double scale) {
 }
 
 QString BodyWords::empty() {
-    return tr("Nothing to show yet.\nThe body takes shape here as soon as something is known of its cells.");
+    return tr("Nothing to show yet.\nThe body takes shape here as soon as something is known of its modules.");
 }
 
 QString BodyWords::caption(const SceneLayout& layout) {
@@ -162,7 +162,7 @@ QString BodyWords::description(const BodyModel* body, const SceneLayout& layout)
         return empty();
     const auto placed = std::count_if(layout.modules.begin(), layout.modules.end(),
                                       [](const ShownModule& module) { return module.placed; });
-    return tr("%L1 of %L2 cells have a place on the body.").arg(placed).arg(body->modules.size());
+    return tr("%L1 of %L2 modules have a place on the body.").arg(placed).arg(body->modules.size());
 }
 
 QString BodyWords::patch(PatchId id) {
@@ -170,7 +170,7 @@ QString BodyWords::patch(PatchId id) {
 }
 
 QString BodyWords::module(ModuleId id) {
-    return tr("Cell %1").arg(id.value);
+    return tr("Module %1").arg(id.value);
 }
 
 QString BodyWords::distance(double metres) {
@@ -180,7 +180,7 @@ QString BodyWords::distance(double metres) {
 QString BodyWords::hint() {
     return tr(
         "Drag to turn, Shift and drag to shift, wheel to zoom. Keys: arrows turn, + and - zoom, F fits the view, "
-        "Home looks from the front.");
+        "Home looks from the front, Page Up and Page Down go from module to module, Return does what a click does.");
 }
 
 }  // namespace skincal

@@ -1,6 +1,7 @@
 #include "ui/widgets/contact_table.h"
 
 #include <QHeaderView>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QLocale>
 #include <QVBoxLayout>
@@ -57,10 +58,22 @@ ContactTable::ContactTable(QWidget* parent)
     nothing_->setProperty("muted", true);
     nothing_->setAlignment(Qt::AlignCenter);
     (new QVBoxLayout(viewport()))->addWidget(nothing_);
-    connect(this, &QTableWidget::cellClicked, this, [this](int row) {
-        if (static_cast<std::size_t>(row) < shown_.size())
-            emit moduleClicked(shown_[static_cast<std::size_t>(row)]);
-    });
+    setTabKeyNavigation(false);
+    connect(this, &QTableWidget::cellClicked, this, &ContactTable::choose);
+}
+
+void ContactTable::choose(int row) {
+    if (row >= 0 && static_cast<std::size_t>(row) < shown_.size())
+        emit moduleClicked(shown_[static_cast<std::size_t>(row)]);
+}
+
+void ContactTable::keyPressEvent(QKeyEvent* event) {
+    const int key = event->key();
+    // Not its signal "activated", which a double click gives as well.
+    if (key == Qt::Key_Return || key == Qt::Key_Enter || key == Qt::Key_Space)
+        choose(currentRow());
+    else
+        QTableWidget::keyPressEvent(event);
 }
 
 void ContactTable::setContacts(const std::vector<TouchContact>& contacts) {

@@ -8,7 +8,8 @@ class QLabel;
 
 namespace skincal {
 
-/// What presses on the skin, the strongest first: module, force, place and normal in the body's frame.
+/// What presses on the skin, the strongest first: module, force, place and normal in the body's frame. A click on a
+/// line, or Return there, chooses its module.
 class ContactTable : public QTableWidget {
     Q_OBJECT
   public:
@@ -20,7 +21,12 @@ class ContactTable : public QTableWidget {
   signals:
     void moduleClicked(skincal::ModuleId module);
 
+  protected:
+    void keyPressEvent(QKeyEvent* event) override;
+
   private:
+    void choose(int row);
+
     std::vector<ModuleId> shown_;
     QLabel* nothing_;
 };

@@ -7,17 +7,27 @@
 #include <QToolTip>
 #include <algorithm>
 
+#include "ui/widgets/module_keys.h"
 #include "ui/widgets/theme.h"
 
 namespace skincal {
 
 NetworkView::NetworkView(QWidget* parent) : QWidget(parent) {
     setAccessibleName(tr("Network of modules"));
+    setToolTip(
+        tr("How the modules are wired, each patch in a colour of its own; dashed outlines need a look. Click a module, "
+           "or go to it with the arrow keys and press Return, to let its LED blink."));
+    setFocusPolicy(Qt::StrongFocus);
+    setCurrent(std::nullopt);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
 }
 
 void NetworkView::setNetwork(FlatNetwork network) {
     network_ = std::move(network);
+    const auto& modules = network_.modules;
+    // Any change of a link lays the network anew.
+    if (std::none_of(modules.begin(), modules.end(), [&](const FlatModule& m) { return m.module == current_; }))
+        setCurrent(std::nullopt);
     update();
 }
 
@@ -66,8 +76,21 @@ void NetworkView::paintEvent(QPaintEvent*) {
     if (network_.modules.empty()) {
         painter.setPen(theme.muted);
         painter.drawText(rect().adjusted(16, 16, -16, -16), Qt::AlignCenter | Qt::TextWordWrap, placeholder_);
-        return;
     }
+    paintModules(painter, theme);
+    paintCables(painter, theme);
+    if (!hasFocus())
+        return;
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(theme.accent, 2));
+    painter.drawRoundedRect(rect().adjusted(1, 1, -2, -2), 4, 4);
+    for (const FlatModule& module : network_.modules) {
+        if (module.module == current_)
+            painter.drawRoundedRect(transform().map(module.outline).boundingRect().adjusted(-4, -4, 4, 4), 4, 4);
+    }
+}
+
+void NetworkView::paintModules(QPainter& painter, const Theme& theme) const {
     const QTransform place = transform();
     const double scale = place.m11();
     QFont numbers = font();
@@ -96,6 +119,10 @@ void NetworkView::paintEvent(QPaintEvent*) {
                              QString::number(module.module.value));
         }
     }
+}
+
+void NetworkView::paintCables(QPainter& painter, const Theme& theme) const {
+    const QTransform place = transform();
     painter.setBrush(Qt::NoBrush);
     for (const FlatLink& link : network_.links) {
         if (link.kind != LinkKind::Cable)
@@ -120,8 +147,31 @@ const FlatModule* NetworkView::moduleAt(const QPointF& position) const {
 }
 
 void NetworkView::mouseReleaseEvent(QMouseEvent* event) {
-    if (const FlatModule* module = moduleAt(event->position()))
+    if (const FlatModule* module = moduleAt(event->position())) {
+        setCurrent(module->module);
         emit moduleClicked(module->module);
+    }
+}
+
+void NetworkView::setCurrent(std::optional<ModuleId> module) {
+    current_ = module;
+    setAccessibleDescription(!module                     ? tr("Arrow keys go from module to module")
+                             : faulty_.contains(*module) ? tr("Module %1, needs attention").arg(module->value)
+                                                         : tr("Module %1").arg(module->value));
+    update();
+}
+
+void NetworkView::keyPressEvent(QKeyEvent* event) {
+    std::vector<ModulePlace> places;
+    for (const FlatModule& module : network_.modules)
+        places.push_back({module.module, toWidget(module.centre)});
+    const int key = event->key();
+    if (const auto next = moduleByKey(key, std::move(places), current_ ? current_ : selected_))
+        setCurrent(next);
+    else if (current_ && (key == Qt::Key_Return || key == Qt::Key_Enter || key == Qt::Key_Space))
+        emit moduleClicked(*current_);
+    else
+        QWidget::keyPressEvent(event);
 }
 
 bool NetworkView::event(QEvent* event) {
@@ -132,7 +182,7 @@ bool NetworkView::event(QEvent* event) {
         QToolTip::showText(help->globalPos(), tr("Module %1: click to let its LED blink").arg(module->module.value),
                            this);
     else
-        QToolTip::hideText();
+        QToolTip::showText(help->globalPos(), toolTip(), this);
     return true;
 }
 

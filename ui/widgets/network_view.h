@@ -8,7 +8,10 @@
 
 namespace skincal {
 
-/// The network laid flat: boards in the colours of their patches, ports as dots, cables as dashed arcs.
+struct Theme;
+
+/// The network laid flat: boards in the colours of their patches, ports as dots, cables as dashed arcs. A module is
+/// chosen by a click, or by keys: arrows go from one to the next, Return or Space does what a click does.
 class NetworkView : public QWidget {
     Q_OBJECT
   public:
@@ -24,6 +27,8 @@ class NetworkView : public QWidget {
 
     [[nodiscard]] QPointF toWidget(const QPointF& mm) const { return transform().map(mm); }
     [[nodiscard]] const FlatNetwork& network() const { return network_; }
+    /// Where the keys are.
+    [[nodiscard]] std::optional<ModuleId> current() const { return current_; }
 
     [[nodiscard]] QSize sizeHint() const override { return {560, 300}; }
     [[nodiscard]] QSize minimumSizeHint() const override { return {240, 160}; }
@@ -34,15 +39,19 @@ class NetworkView : public QWidget {
   protected:
     void paintEvent(QPaintEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
     bool event(QEvent* event) override;
 
   private:
     [[nodiscard]] QTransform transform() const;
+    void setCurrent(std::optional<ModuleId> module);
+    void paintModules(QPainter& painter, const Theme& theme) const;
+    void paintCables(QPainter& painter, const Theme& theme) const;
     [[nodiscard]] const FlatModule* moduleAt(const QPointF& position) const;
 
     FlatNetwork network_;
     std::set<ModuleId> faulty_;
-    std::optional<ModuleId> selected_, lit_;
+    std::optional<ModuleId> selected_, lit_, current_;
     QString placeholder_;
 };
 

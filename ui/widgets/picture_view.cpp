@@ -1,10 +1,9 @@
 #include "ui/widgets/picture_view.h"
 
-#include <QMouseEvent>
 #include <QPainter>
-#include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ui/widgets/theme.h"
 
@@ -13,7 +12,9 @@ namespace skincal {
 PictureView::PictureView(QWidget* parent) : QWidget(parent) {
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
     setAccessibleName(tr("Camera picture"));
+    setToolTip(tr("What the camera sees. The wheel or + and - zoom, a drag or the arrow keys shift, 0 shows all."));
     setMouseTracking(false);
+    setFocusPolicy(Qt::StrongFocus);
 }
 
 void PictureView::setImage(const QImage& image) {
@@ -101,6 +102,7 @@ void PictureView::paintEvent(QPaintEvent*) {
     if (image_.isNull()) {
         painter.setPen(theme.muted);
         painter.drawText(rect().adjusted(16, 16, -16, -16), Qt::AlignCenter | Qt::TextWordWrap, placeholder_);
+        paintFocus(painter);
         return;
     }
     painter.setRenderHint(QPainter::SmoothPixmapTransform, zoom_ < 4);
@@ -127,67 +129,31 @@ void PictureView::paintEvent(QPaintEvent*) {
             painter.drawText(at + QPointF(radius + 2, -radius + 4), QString::number(mark.module->value));
         }
     }
+    paintFocus(painter);
 }
 
-void PictureView::wheelEvent(QWheelEvent* event) {
-    const double factor = std::pow(1.0015, event->angleDelta().y());
-    const double zoom = std::clamp(zoom_ * factor, 1.0, 32.0);
-    // What is under the mouse stays there.
-    const QPointF from = event->position() - QPointF(0.5 * width(), 0.5 * height()) - shift_;
-    shift_ += from * (1 - zoom / zoom_);
-    zoom_ = zoom;
-    if (zoom_ == 1)
-        shift_ = {};
-    update();
-}
-
-void PictureView::mousePressEvent(QMouseEvent* event) {
-    pressedAt_ = event->position();
-    isDragging_ = false;
-}
-
-void PictureView::mouseMoveEvent(QMouseEvent* event) {
-    const QPointF way = event->position() - pressedAt_;
-    if (!isDragging_ && way.manhattanLength() < 4)
+void PictureView::paintFocus(QPainter& painter) const {
+    if (!hasFocus())
         return;
-    isDragging_ = true;
-    if (zoom_ > 1) {
-        shift_ += way;
-        pressedAt_ = event->position();
-        update();
-    }
-}
-
-void PictureView::mouseReleaseEvent(QMouseEvent* event) {
-    if (isDragging_)
-        return;
-    constexpr double kReach = 14;
-    const PictureMark* nearest = nullptr;
-    double best = kReach;
-    for (const PictureMark& mark : marks_) {
-        const QPointF way = toWidget(mark.pixel) - event->position();
-        const double distance = std::hypot(way.x(), way.y());
-        if (mark.module && distance < best) {
-            best = distance;
-            nearest = &mark;
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(Theme::current().accent, 2));
+    painter.drawRect(rect().adjusted(1, 1, -1, -1));
+    for (const ModulePlace& place : places()) {
+        if (place.module != current_)
+            continue;
+        constexpr double kHalf = 15;
+        const QRectF box(place.at - QPointF(kHalf, kHalf), QSizeF(2 * kHalf, 2 * kHalf));
+        // Light on dark is seen on every ground.
+        for (const auto& [colour, width] : {std::pair(QColor(0, 0, 0, 170), 4.0), std::pair(QColor(Qt::white), 1.6)}) {
+            painter.setPen(QPen(colour, width));
+            painter.drawRoundedRect(box, 4, 4);
         }
+        const QString number = QString::number(place.module.value);
+        const QRectF ground(box.topRight() + QPointF(3, 0),
+                            QSizeF(fontMetrics().horizontalAdvance(number) + 8, fontMetrics().height() + 2));
+        painter.fillRect(ground, QColor(0, 0, 0, 190));
+        painter.drawText(ground, Qt::AlignCenter, number);
     }
-    if (nearest != nullptr) {
-        emit markClicked(*nearest->module);
-        return;
-    }
-    for (const PictureShape& shape : shapes_) {
-        if (!shape.isDim && transform().map(shape.outline).containsPoint(event->position(), Qt::OddEvenFill)) {
-            emit markClicked(shape.module);
-            return;
-        }
-    }
-}
-
-void PictureView::mouseDoubleClickEvent(QMouseEvent*) {
-    zoom_ = 1;
-    shift_ = {};
-    update();
 }
 
 }  // namespace skincal

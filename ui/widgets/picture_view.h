@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry/ids.h"
+#include "ui/widgets/module_keys.h"
 
 namespace skincal {
 
@@ -30,6 +31,8 @@ struct PictureShape {
 };
 
 /// A camera's picture, as large as the widget allows, with marks that can be clicked. The wheel zooms, a drag shifts.
+/// Keys: arrows go from mark to mark, or shift where there is none to choose; Return or Space does what a click does;
+/// + and - zoom, 0 shows all.
 class PictureView : public QWidget {
     Q_OBJECT
   public:
@@ -47,6 +50,9 @@ class PictureView : public QWidget {
 
     /// Where a pixel is drawn; pixel (0, 0) is the centre of the top-left one.
     [[nodiscard]] QPointF toWidget(const QPointF& pixel) const;
+    /// Where the keys are.
+    [[nodiscard]] std::optional<ModuleId> current() const { return current_; }
+    [[nodiscard]] double zoom() const { return zoom_; }
 
     [[nodiscard]] QSize sizeHint() const override { return {640, 360}; }
     [[nodiscard]] QSize minimumSizeHint() const override { return {240, 140}; }
@@ -61,16 +67,27 @@ class PictureView : public QWidget {
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
     void mouseDoubleClickEvent(QMouseEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
 
   private:
     [[nodiscard]] QTransform transform() const;
     [[nodiscard]] bool hasRoom(const PictureMark& mark) const;
     void paintShapes(QPainter& painter) const;
+    void paintFocus(QPainter& painter) const;
+    /// What a click can choose.
+    [[nodiscard]] std::vector<ModulePlace> places() const;
+    void setCurrent(std::optional<ModuleId> module);
+    void zoomAbout(const QPointF& position, double factor);
+    void shiftBy(const QPointF& way);
+    void showAll();
+    /// The rest of keyPressEvent.
+    [[nodiscard]] bool moveByKey(int key);
 
     QImage image_;
     std::vector<PictureMark> marks_;
     std::vector<PictureShape> shapes_;
     std::optional<ModuleId> selected_;
+    std::optional<ModuleId> current_;
     QString placeholder_;
     double zoom_ = 1;
     QPointF shift_;

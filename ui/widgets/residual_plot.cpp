@@ -87,12 +87,12 @@ void ResidualPlot::paintEvent(QPaintEvent*) {
         for (std::size_t i = 0; i < clouds_.size(); ++i) {
             if ((selected_ == i) != isFront)
                 continue;
-            QColor colour = clouds_[i].colour;
+            QColor colour = clouds_[i].sign.colour;
             colour.setAlphaF(!selected_ ? 0.75F : isFront ? 1.0F : 0.18F);
             painter.setBrush(colour);
             const double radius = isFront ? 2.8 : 2;
             for (const QPointF& r : clouds_[i].residuals)
-                painter.drawEllipse(middle + scale * r, radius, radius);
+                paintShape(painter, clouds_[i].sign.shape, middle + scale * r, radius);
         }
     }
     painter.setPen(theme.muted);

@@ -1,20 +1,21 @@
 #pragma once
 
-#include <QColor>
 #include <QWidget>
 #include <optional>
 #include <vector>
 
+#include "ui/presenters/board_sign.h"
+
 namespace skincal {
 
-/// Residuals in two dimensions as points, coloured by where they come from, about a cross at zero. Both axes have one
-/// scale, and circles of round radii show it. A cloud that is round and centred is noise; an elongated or shifted one
-/// is an error that is not.
+/// Residuals in two dimensions as points, whose colour and shape tell where they come from, about a cross at zero. Both
+/// axes have one scale, and circles of round radii show it. A cloud that is round and centred is noise; an elongated or
+/// shifted one is an error that is not.
 class ResidualPlot : public QWidget {
     Q_OBJECT
   public:
     struct Cloud {
-        QColor colour;
+        BoardSign sign;
         std::vector<QPointF> residuals;  ///< px; y downwards, as in pictures
         bool isUsed = true;              ///< others don't decide about the scale
     };

@@ -1,7 +1,8 @@
 #include "ui/widgets/theme.h"
 
 #include <QGuiApplication>
-#include <array>
+
+#include "ui/palette.h"
 
 namespace skincal {
 
@@ -53,11 +54,14 @@ QString Theme::styleSheet() const {
                "padding: 4px 6px; }"
                "QPushButton { padding: 5px 12px; border: 1px solid %1; border-radius: 4px; background: %3; }"
                "QPushButton:hover:enabled { border-color: %4; }"
-               "QPushButton:focus, QTableView:focus, QListView:focus { border-color: %4; }"
+               "QTableView:focus, QListView:focus { border-color: %4; }"
+               // As large as without it.
+               "QPushButton:focus { border: 2px solid %4; padding: 4px 11px; }"
                "QPushButton:disabled { color: %5; }"
                "QPushButton:checked { background: %7; border-color: %4; }"
                "QPushButton[primary=\"true\"]:enabled { background: %4; color: %6; border-color: %4; font-weight: 600; "
                "}"
+               "QPushButton[primary=\"true\"]:focus { border-color: %9; }"
                // Fusion fills the groove of a disabled slider with the accent, as if it could be moved.
                "QSlider::groove:horizontal:disabled { height: 3px; background: %1; border-radius: 1px; }"
                "QSlider::handle:horizontal:disabled { width: 11px; margin: -4px 0; background: %5; border-radius: 5px; "
@@ -71,14 +75,11 @@ QString Theme::styleSheet() const {
         .arg(line.name(), muted.name(), panel.name(), accent.name(),
              isDark ? QStringLiteral("#69717f") : QStringLiteral("#9aa1ad"),
              isDark ? QStringLiteral("#0b1424") : QStringLiteral("#ffffff"),
-             isDark ? QStringLiteral("#2d4468") : QStringLiteral("#d3e2fa"), attention.name());
+             isDark ? QStringLiteral("#2d4468") : QStringLiteral("#d3e2fa"), attention.name(), text.name());
 }
 
 QColor patchTint(unsigned patch) {
-    // Okabe and Ito, without black.
-    static constexpr std::array<const char*, 8> kTints{"#0072b2", "#e69f00", "#009e73", "#cc79a7",
-                                                       "#56b4e9", "#d55e00", "#f0e442", "#8c8c99"};
-    return QColor(kTints.at(patch % kTints.size()));
+    return QColor::fromRgb(kKinds.at(patch % kKinds.size()));
 }
 
 }  // namespace skincal

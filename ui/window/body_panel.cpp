@@ -30,8 +30,11 @@ BodyPanel::BodyPanel(QWidget* parent)
     auto* ellipsoids = new QCheckBox(tr("Ellipsoids"));
     ellipsoids->setToolTip(tr("Where each module is with three standard deviations, enlarged as the legend says"));
     auto* measure = new QPushButton(tr("Measure"));
+    measure->setObjectName(QStringLiteral("measure"));
     measure->setCheckable(true);
-    measure->setToolTip(tr("Click two modules to see how far their LEDs are apart"));
+    measure->setToolTip(
+        tr("Click two modules to see how far their LEDs are apart; by keys: Page Down to each in the 3D view, and "
+           "Return"));
     auto* fit = new QPushButton(tr("Fit"));
     fit->setToolTip(tr("Show the whole body, and the mesh about it (F)"));
     bar->addWidget(colours_);

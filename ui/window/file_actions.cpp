@@ -38,7 +38,8 @@ void FileActions::addTo(QToolBar& bar) {
     auto* recent = new QToolButton;
     recent->setObjectName(QStringLiteral("recent"));
     recent->setText(tr("Recent"));
-    recent->setToolTip(tr("Recordings that were opened or saved lately"));
+    recent->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_R));
+    recent->setToolTip(tr("Recordings that were opened or saved lately (Ctrl+R)"));
     recent->setPopupMode(QToolButton::InstantPopup);
     auto* menu = new QMenu(recent);
     menu->setToolTipsVisible(true);

@@ -4,6 +4,8 @@
 #include <QApplication>
 #include <QCloseEvent>
 #include <QComboBox>
+#include <QDir>
+#include <QFileInfo>
 #include <QListView>
 #include <QLocale>
 #include <QMimeData>
@@ -30,6 +32,23 @@ std::size_t indexOf(Step step) {
     return static_cast<std::size_t>(step);
 }
 
+bool isMesh(const QFileInfo& file) {
+    return file.isFile() && file.suffix().compare(QStringLiteral("stl"), Qt::CaseInsensitive) == 0;
+}
+
+/// What can be opened of what is dragged here: a mesh, or the folder of a recording, which may be dragged by the file
+/// that makes it one.
+std::optional<QFileInfo> droppedFile(const QMimeData& dragged) {
+    const auto urls = dragged.urls();
+    if (urls.size() != 1 || !urls.first().isLocalFile())
+        return std::nullopt;
+    const QFileInfo file(urls.first().toLocalFile());
+    const QString recording = QStringLiteral("recording.json");
+    if (isMesh(file) || (file.isDir() && QFileInfo::exists(QDir(file.filePath()).filePath(recording))))
+        return file;
+    return file.isFile() && file.fileName() == recording ? std::optional(QFileInfo(file.path())) : std::nullopt;
+}
+
 }  // namespace
 
 MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
@@ -52,6 +71,7 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
     buildPages();
     buildFrame();
     buildToolBar();
+    buildKeys();
     auto* demo = new DemoStage(demo_, *static_cast<DemoPage*>(pages_.at(indexOf(Step::Demo))), *body_, this);
     connect(demo, &DemoStage::activeChanged, colours_, &QWidget::setDisabled);
     new MeshStage(mesh_, *body_, *colours_, this);
@@ -118,12 +138,14 @@ std::optional<Step> MainWindow::stepAfter() const {
 
 void MainWindow::setDark(bool dark) {
     const Theme theme = dark ? Theme::dark() : Theme::light();
+    // Without the old style sheet for a moment: changing one for another takes Qt five times as long as putting one on.
+    qApp->setStyleSheet({});
     QApplication::setPalette(theme.palette());
     qApp->setStyleSheet(theme.styleSheet());
     body_->setDark(dark);
     // What a click gives.
     theme_->setText(dark ? tr("Light colours") : tr("Dark colours"));
-    theme_->setToolTip(dark ? tr("Change to light colours") : tr("Change to dark colours"));
+    theme_->setToolTip(dark ? tr("Change to light colours (Ctrl+T)") : tr("Change to dark colours (Ctrl+T)"));
 }
 
 void MainWindow::begin(const RigOffers& offers) {
@@ -202,19 +224,16 @@ void MainWindow::jumpTo(int row) {
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-    if (event->mimeData()->hasUrls())
+    if (droppedFile(*event->mimeData()))
         event->acceptProposedAction();
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
-    const auto urls = event->mimeData()->urls();
-    if (urls.isEmpty() || !urls.first().isLocalFile())
+    const auto file = droppedFile(*event->mimeData());
+    if (!file)
         return;
-    const QString file = urls.first().toLocalFile();
-    if (file.endsWith(QStringLiteral(".stl"), Qt::CaseInsensitive))
-        openMesh(file);
-    else
-        openRecording(file);
+    event->acceptProposedAction();
+    isMesh(*file) ? openMesh(file->filePath()) : openRecording(file->filePath());
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

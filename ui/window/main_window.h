@@ -60,6 +60,11 @@ class MainWindow : public QMainWindow {
     void buildPages();
     void buildToolBar();
     void buildFrame();
+    void buildKeys();
+    /// Gives the keys to what comes first on the page.
+    void focusPage();
+    /// To the next of steps, page, body and problems, or with -1 the one before.
+    void focusArea(int way);
     [[nodiscard]] QWidget* buildSteps();
     [[nodiscard]] QWidget* buildNavigation();
     void offerNewest(const SessionKeeper& keeper);

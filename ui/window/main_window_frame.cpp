@@ -81,6 +81,9 @@ QWidget* MainWindow::buildSteps() {
     stepList_ = new QListView;
     stepList_->setObjectName(QStringLiteral("steps"));
     stepList_->setAccessibleName(tr("Steps"));
+    stepList_->setToolTip(
+        tr("The steps and how far each is; any can be gone back to. Ctrl and a digit leads to one, F6 to the next part "
+           "of the window."));
     stepList_->setModel(&steps_);
     stepList_->setItemDelegate(new StepDelegate(stepList_));
     stepList_->setFrameShape(QFrame::NoFrame);
@@ -96,8 +99,13 @@ QWidget* MainWindow::buildSteps() {
         if (pages_.at(row) == nullptr)
             return;
         stack_->setCurrentIndex(static_cast<int>(row));
+        // What another step marked in 3D means nothing here.
+        showModules({});
         pages_.at(row)->setActive(true);
         refresh();
+        // Who goes through the list with the arrow keys stays there.
+        if (focusWidget() != stepList_)
+            focusPage();
     });
     return stepList_;
 }
@@ -106,13 +114,11 @@ QWidget* MainWindow::buildNavigation() {
     auto* bar = new QWidget;
     auto* row = new QHBoxLayout(bar);
     row->setContentsMargins(20, 4, 20, 12);
-    back_ = new QPushButton;
+    back_ = new QPushButton(tr("Back"));
     back_->setToolTip(tr("To the step before (Alt+Left)"));
-    back_->setShortcut(QKeySequence(Qt::ALT | Qt::Key_Left));
-    next_ = new QPushButton;
+    next_ = new QPushButton(tr("Next"));
     next_->setObjectName(QStringLiteral("next"));
     next_->setToolTip(tr("To the next step (Alt+Right)"));
-    next_->setShortcut(QKeySequence(Qt::ALT | Qt::Key_Right));
     row->addWidget(back_);
     row->addStretch();
     row->addWidget(next_);
@@ -170,6 +176,7 @@ void MainWindow::buildFrame() {
     // No higher than the bar is without it: what is above must not move.
     busy_->setMaximumHeight(statusBar()->sizeHint().height() - 6);
     busy_->setAccessibleName(tr("Solving"));
+    busy_->setToolTip(tr("The body is being computed from the newest data; you can go on meanwhile"));
     statusBar()->addPermanentWidget(busy_);
 }
 
@@ -180,9 +187,10 @@ void MainWindow::buildToolBar() {
     files_.addTo(*bar);
     bar->addSeparator();
     QUndoStack& undo = workbench_.session().undoStack();
-    const auto add = [&](const char* name, QKeySequence::StandardKey key, const QString& word, auto work, auto canWork,
-                         auto described) {
+    const auto add = [&](const char* name, QKeySequence::StandardKey key, const QString& word, const QString& why,
+                         auto work, auto canWork, auto described) {
         QAction* action = bar->addAction(word);
+        action->setToolTip(why);
         action->setObjectName(QLatin1String(name));
         QList<QKeySequence> keys = QKeySequence::keyBindings(key);
         // Both are in people's fingers, whatever the desktop.
@@ -196,15 +204,17 @@ void MainWindow::buildToolBar() {
             action->setText(what.isEmpty() ? word : tr("%1: %2").arg(word, what));
         });
     };
-    add("undo", QKeySequence::Undo, tr("Undo"), &QUndoStack::undo, &QUndoStack::canUndoChanged,
-        &QUndoStack::undoTextChanged);
-    add("redo", QKeySequence::Redo, tr("Redo"), &QUndoStack::redo, &QUndoStack::canRedoChanged,
-        &QUndoStack::redoTextChanged);
+    add("undo", QKeySequence::Undo, tr("Undo"),
+        tr("Take back the last decision, whatever step it was made in; what was measured stays (Ctrl+Z)"),
+        &QUndoStack::undo, &QUndoStack::canUndoChanged, &QUndoStack::undoTextChanged);
+    add("redo", QKeySequence::Redo, tr("Redo"), tr("Make the decision again that was taken back (Ctrl+Shift+Z)"),
+        &QUndoStack::redo, &QUndoStack::canRedoChanged, &QUndoStack::redoTextChanged);
     auto* space = new QWidget;
     space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
     bar->addWidget(space);
     theme_ = bar->addAction(QString());
     theme_->setObjectName(QStringLiteral("theme"));
+    theme_->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_T));
     connect(theme_, &QAction::triggered, this, [this] { setDark(!Theme::current().isDark); });
 }
 

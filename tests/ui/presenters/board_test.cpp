@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <QAbstractItemModelTester>
 #include <QSignalSpy>
 
 #include "tests/ui/presenters/desk.h"
@@ -196,6 +197,7 @@ TEST_F(BoardDesk, ACameraThatIsPulledOrChangedEndsIt) {
 
 TEST_F(BoardDesk, ARemovedBoardIsOutAndTheRestIsCalibratedAnew) {
     BoardModel model(*boards);
+    const QAbstractItemModelTester tester(&model, QAbstractItemModelTester::FailureReportingMode::Fatal);
     ASSERT_TRUE(take(BoardPresenter::kLeastBoards + 1));
     boards->stop();
     ASSERT_TRUE(waitFor([&] { return boards->calibration() && !boards->isCalibrating(); }));

@@ -5,6 +5,7 @@
 
 #include <QAbstractItemModelTester>
 #include <QSignalSpy>
+#include <QSortFilterProxyModel>
 
 #include "core/formats/body_json.h"
 #include "core/workflow/simulated_recording.h"
@@ -23,6 +24,12 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
     const QAbstractItemModelTester links(&desk.connection.links(), kFatal);
     const QAbstractItemModelTester poses(&desk.pose.poses(), kFatal);
     const QAbstractItemModelTester detections(&desk.scan.detections(), kFatal);
+    // As the table of the Scan page shows them.
+    QSortFilterProxyModel sortedDetections;
+    sortedDetections.setSourceModel(&desk.scan.detections());
+    sortedDetections.setSortRole(DetectionModel::kSortRole);
+    sortedDetections.sort(DetectionModel::Residual, Qt::DescendingOrder);
+    const QAbstractItemModelTester sorted(&sortedDetections, kFatal);
     const QAbstractItemModelTester steps(&desk.steps, kFatal);
     const QAbstractItemModelTester problems(&desk.problems, kFatal);
     EXPECT_TRUE(desk.previewOf(0, 5).isEmpty());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QDir>
+#include <QListView>
 
 #include "tests/ui/watchful_application.h"
 #include "tests/wait_for.h"
@@ -46,6 +47,14 @@ bool DrivenWindow::click(const char* name) {
     return true;
 }
 
+bool DrivenWindow::goTo(Step step) {
+    auto* list = find<QListView>("steps");
+    const QModelIndex index = list->model()->index(static_cast<int>(step), 0);
+    list->scrollTo(index);
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualRect(index).center());
+    return window.step() == step;
+}
+
 std::size_t DrivenWindow::patchesPlaced() {
     if (!session().solution())
         return 0;
@@ -59,12 +68,12 @@ bool DrivenWindow::isSolved() {
 }
 
 bool DrivenWindow::connectSkin() {
-    window.showStep(Step::Connect);
-    return click("connect") && waitFor([&] { return workbench.isSkinReady(); });
+    return goTo(Step::Connect) && click("connect") && waitFor([&] { return workbench.isSkinReady(); });
 }
 
 bool DrivenWindow::capturePoses(std::size_t poses) {
-    window.showStep(Step::Pose);
+    if (!goTo(Step::Pose))
+        return false;
     const auto count = [&] { return posesOf(session().measured(), session().decisions()).size(); };
     while (count() < poses) {
         const std::size_t before = count();
@@ -77,18 +86,17 @@ bool DrivenWindow::capturePoses(std::size_t poses) {
 }
 
 bool DrivenWindow::useMakersIntrinsics() {
-    window.showStep(Step::Camera);
-    return click("makersIntrinsics") && session().decisions().camera.has_value();
+    return goTo(Step::Camera) && click("makersIntrinsics") && session().decisions().camera.has_value();
 }
 
 bool DrivenWindow::scanHere() {
-    window.showStep(Step::Scan);
     const std::size_t before = session().measured().views.size();
-    return click("scan") && waitFor([&] { return session().measured().views.size() > before; });
+    return goTo(Step::Scan) && click("scan") && waitFor([&] { return session().measured().views.size() > before; });
 }
 
 bool DrivenWindow::moveCameraOn() {
-    window.showStep(Step::Views);
+    if (!goTo(Step::Views))
+        return false;
     // Its advice comes after the body; what can be pressed is not in its way.
     if (!waitFor([&] { return session().guidance() != nullptr; }))
         return false;

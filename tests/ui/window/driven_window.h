@@ -22,6 +22,8 @@ class DrivenWindow {
     [[nodiscard]] bool waitFor(const std::function<bool()>& isSo);
     /// Clicks a button that is visible and enabled. False where there is none.
     [[nodiscard]] bool click(const char* button);
+    /// Clicks a step in the list.
+    [[nodiscard]] bool goTo(Step step);
     template <class Widget>
     [[nodiscard]] Widget* find(const char* name) {
         return window.findChild<Widget*>(QString::fromLatin1(name));

@@ -1,5 +1,6 @@
 #include "ui/pages/scan_page.h"
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QProgressBar>
 #include <QPushButton>
@@ -38,6 +39,16 @@ std::vector<PictureMark> liveMarks(const std::vector<LiveSpot>& spots) {
     return marks;
 }
 
+/// " (3, 17)", where they are few.
+QString namesOf(const std::vector<ModuleId>& modules) {
+    constexpr std::size_t kMost = 6;
+    QStringList names;
+    for (const ModuleId module : modules)
+        names << QString::number(module.value);
+    return names.size() > static_cast<qsizetype>(kMost) ? QString()
+                                                        : QStringLiteral(" (%1)").arg(names.join(QStringLiteral(", ")));
+}
+
 }  // namespace
 
 ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* parent)
@@ -61,6 +72,14 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     pause_->setObjectName(QStringLiteral("pause"));
     top->addWidget(start_);
     top->addWidget(pause_);
+    auto* looksAgain = new QCheckBox(tr("Look again"));
+    looksAgain->setObjectName(QStringLiteral("looksAgain"));
+    looksAgain->setChecked(presenter.looksAgain());
+    looksAgain->setToolTip(
+        tr("Where light stays in the pictures that is nobody's, those that are missing are looked for once more among "
+           "fewer others, and what a knock of the camera spoilt is scanned again"));
+    connect(looksAgain, &QCheckBox::toggled, this, [this](bool again) { presenter_.setLooksAgain(again); });
+    top->addWidget(looksAgain);
     top->addWidget(progress_, 1);
     top->addStretch();
     progress_->setObjectName(QStringLiteral("scanProgress"));
@@ -224,13 +243,19 @@ void ScanPage::refresh() {
     } else if (state.isRunning()) {
         const auto& spots = presenter_.spots();
         const auto known = std::count_if(spots.begin(), spots.end(), [](const LiveSpot& spot) { return spot.module; });
+        const auto& wanted = presenter_.wanted();
         text = tr("Picture %1 of %2").arg(state.taken() + 1).arg(state.frames);
-        if (!spots.empty())
+        if (!wanted.empty())
+            text = tr("Looking again for %n modules", nullptr, static_cast<int>(wanted.size())) + namesOf(wanted) +
+                   tr(": ") + text;
+        else if (!spots.empty())
             text += tr(", %n spots", nullptr, static_cast<int>(spots.size())) + tr(", %1 of them known").arg(known);
         if (const auto left = presenter_.timeLeft())
             text += tr(", %1 s left").arg(std::chrono::duration<double>(*left).count(), 0, 'f', 0);
         if (const auto moved = presenter_.movedSoFar_px())
-            text = tr("The camera moved by %1 px: cancel, and scan again with camera and body at rest.")
+            text = (presenter_.looksAgain()
+                        ? tr("The camera moved by %1 px: hold it still, what that spoilt is scanned again.")
+                        : tr("The camera moved by %1 px: cancel, and scan again with camera and body at rest."))
                        .arg(*moved, 0, 'f', 1) +
                    QLatin1Char(' ') + text;
     } else if (state.phase == Phase::Failed) {

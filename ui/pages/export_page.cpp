@@ -79,6 +79,7 @@ ExportPage::ExportPage(ExportPresenter& presenter, QWidget* parent)
     });
     connect(browse, &QPushButton::clicked, this, &ExportPage::browse);
     connect(write_, &QPushButton::clicked, this, &ExportPage::write);
+    connect(file_, &QLineEdit::returnPressed, write_, &QPushButton::click);
     connect(&presenter, &ExportPresenter::changed, this, [this] {
         outcome_->clear();
         refresh();

@@ -127,7 +127,7 @@ FrameInfo readFrame(const JsonCursor& cursor, const ModuleIndex& index) {
     }
     if (cursor.holds("t"))
         frame.time_s = cursor.at("t").number();
-    // A key of ours, which the page does not name: others read past it.
+    // A key that other readers may pass over.
     if (cursor.holds("look"))
         frame.look = static_cast<std::size_t>(cursor.at("look").integer(0, kMaxLooks));
     return frame;

@@ -32,7 +32,7 @@ struct ScanRun {
         Paused,
         Decoding,  ///< all pictures are there
         Done,
-        Failed,  ///< `fault` says; what was kept is thrown away
+        Failed,  ///< `fault` says; the pictures are of no use any more
     };
     /// Why a scan was broken off; the window has a sentence for each.
     enum class Fault {

@@ -305,27 +305,29 @@ ScanScore scoreScan(World world, const ScanCase& what, const RunContext& context
         return picture;
     };
     ScanScore result;
-    const auto decode = [&] {
+    const auto decode = [&](const ViewDetections* before, std::size_t first) {
         painting = 0;
         const auto start = Clock::now();
-        auto view = what.method == ScanMethod::PaperSingle ? detectPaper("view", modules, frames, load, {}, context)
-                                                           : decodeView("view", modules, frames, load, {}, context);
+        auto view = before != nullptr ? decodeFurther(*before, first, modules, frames, load, {}, context)
+                    : what.method == ScanMethod::PaperSingle ? detectPaper("view", modules, frames, load, {}, context)
+                                                             : decodeView("view", modules, frames, load, {}, context);
         if (!view && !view.error().cancelled)
             throw std::logic_error("a scan of the study can't be decoded: " + view.error().message);
         result.seconds = std::chrono::duration<double>(Clock::now() - start).count() - painting;
         return view;
     };
-    auto view = decode();
+    auto view = decode(nullptr, 0);
     FurtherLooks further(kView);
     while (view && what.method == ScanMethod::Coded) {
         const auto look = further.next(*view);
         if (!look)
             break;
+        const std::size_t first = frames.size();
         for (const auto& lit : *look)
             frames.push_back({{}, lit, {}, further.looks()});
         if (!pictures.empty())
             pictures.resize(frames.size());
-        view = decode();
+        view = decode(&*view, first);
     }
     if (!view)
         return {};

@@ -58,11 +58,11 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
     }
     using Cause = Undetected::Cause;
     result.unexplained =
-        verdicts.unexplained() +
-        static_cast<std::size_t>(
-            std::count_if(result.undetected.begin(), result.undetected.end(), [](const Undetected& one) {
-                return one.cause == Cause::Alike || one.cause == Cause::NotAnLed || one.cause == Cause::TooBright;
-            }));
+        verdicts.unexplained() + static_cast<std::size_t>(std::count_if(
+                                     result.undetected.begin(), result.undetected.end(), [](const Undetected& one) {
+                                         return one.cause == Cause::Alike || one.cause == Cause::NotAnLed ||
+                                                one.cause == Cause::TooBright;
+                                     }));
     return result;
 }
 
@@ -156,6 +156,9 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
     if (!moved_px || *moved_px > 0)
         moved_px = std::max(moved_px, knocked_px(sightings, matches));
     ViewDetections result = decide(modules, scan, matches, sightings, moved_px, options, verdicts);
+    result.look = frames.empty() ? 0 : frames.front().look;
+    for (WordReading& reading : result.readings)
+        reading.look = result.look;
     context.report("measuring spots", 1);
     return result;
 }
@@ -192,15 +195,26 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
     if (!view)
         return view;
     view->name = std::move(name);
-    for (std::size_t i = 1; i < beginnings.size(); ++i) {
-        const std::size_t last = i + 1 < beginnings.size() ? beginnings[i + 1] : frames.size();
-        const auto look = frames.subspan(beginnings[i], last - beginnings[i]);
-        const auto further = decodeLook(modulesLitIn(look), look, from(beginnings[i], load), options, context);
+    return decodeFurther(*std::move(view), end, modules, frames, load, options, context);
+}
+
+tl::expected<ViewDetections, ScanError> decodeFurther(ViewDetections view, std::size_t first,
+                                                      std::span<const ModuleId> modules,
+                                                      std::span<const FrameInfo> frames, const FrameLoader& load,
+                                                      const DecoderOptions& options, const RunContext& context) {
+    if (!options.validate())
+        throw std::logic_error("DecoderOptions out of range");
+    while (first < frames.size()) {
+        const auto rest = frames.subspan(first);
+        const std::vector<std::size_t> beginnings = beginningsOfLooks(rest);
+        const auto look = rest.first(beginnings.size() > 1 ? beginnings[1] : rest.size());
+        const auto further = decodeLook(modulesLitIn(look), look, from(first, load), options, context);
         if (!further)
             return further;
-        addLook(*view, *further, {options.maxMotion_px, options.sameSpot_px});
+        (void)addLook(view, *further, {options.maxMotion_px, options.sameSpot_px});
+        first += look.size();
     }
-    sortAs(modules, *view);
+    sortAs(modules, view);
     return view;
 }
 

@@ -59,6 +59,12 @@ struct DecoderOptions {
                                                                  const DecoderOptions& options = {},
                                                                  const RunContext& context = {});
 
+/// Adds the looks from `frames[first]` on to a view of the frames before: what decodeView of all of them gives, without
+/// decoding the earlier ones once more. Fails and throws likewise.
+[[nodiscard]] tl::expected<ViewDetections, ScanError> decodeFurther(
+    ViewDetections view, std::size_t first, std::span<const ModuleId> modules, std::span<const FrameInfo> frames,
+    const FrameLoader& load, const DecoderOptions& options = {}, const RunContext& context = {});
+
 /// 8-bit grey of what a loader returned.
 [[nodiscard]] cv::Mat toGrey(const cv::Mat& frame);
 

@@ -55,6 +55,7 @@ struct WordReading {
     std::string received;  ///< the same from its brightness; '.' where something disturbed it
     double snr = 0;        ///< its light in one picture over the noise of that
     double margin = 0;     ///< lead over whatever else it could be, in -2 log likelihood
+    std::size_t look = 0;  ///< FrameInfo::look of the pictures that it was read in
 };
 
 /// Everything the picture of one view yields.
@@ -67,6 +68,7 @@ struct ViewDetections {
     /// Spots that blink like LEDs, and like none that was found: light of modules that could not be told apart, or of
     /// something else. Of the last look, where there were several.
     std::size_t unexplained = 0;
+    std::size_t look = 0;  ///< the first look that counts: its camera's are the pixels of all that is found
 };
 
 }  // namespace skincal

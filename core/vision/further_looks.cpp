@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <random>
 #include <set>
 #include <stdexcept>
+#include <utility>
+
+#include "core/geometry/random.h"
 
 namespace skincal {
 namespace {
@@ -52,7 +54,9 @@ void FurtherLooks::beginTurn(std::vector<ModuleId> modules) {
         return;
     atATime_ = std::clamp<std::size_t>(atATime_, 1, modules.size());
     // Neighbours have neighbouring numbers: whoever is looked for together must not be those again.
-    std::shuffle(modules.begin(), modules.end(), std::mt19937_64(seed_ + looks_));
+    Random random(seed_ + looks_, "looks");
+    for (std::size_t i = modules.size(); i > 1; --i)
+        std::swap(modules[i - 1], modules[random.index(i)]);
     const std::size_t parts = (modules.size() + atATime_ - 1) / atATime_;
     for (std::size_t part = 0; part < parts; ++part) {
         const auto at = [&](std::size_t k) {
@@ -69,6 +73,12 @@ std::optional<LitSets> FurtherLooks::next(const ViewDetections& view) {
         return one.cause == Undetected::Cause::CameraMoved;
     });
     const bool isOpen = isSpoilt || view.unexplained > 0;
+    // What moved since goes on moving, or stands elsewhere: pixels of there don't belong to this view.
+    if (!view.found.empty() && view.moved_px.value_or(0) > options_.maxMotion_px) {
+        wanted_.clear();
+        waiting_.clear();
+        return std::nullopt;
+    }
     std::vector<ModuleId> wanted = std::exchange(wanted_, {});
     if (looks_ == 0) {
         const std::size_t all = missing.size() + view.found.size();

@@ -14,7 +14,9 @@ struct FurtherLookOptions {
     std::size_t anchors = 4;      ///< modules that were found, lit again: they tell whether the camera moved meanwhile
     std::size_t maxFrames = 300;  ///< of all further looks of a view together
 
-    [[nodiscard]] bool validate() const { return anchors <= 100; }
+    double maxMotion_px = 1;  ///< of the camera since the first look that counts; then there are no more
+
+    [[nodiscard]] bool validate() const { return anchors > 0 && anchors <= 100 && maxMotion_px > 0; }
 };
 
 /// What to light again after a scan that left modules undecided. While there is light in the pictures that blinks like

@@ -20,9 +20,8 @@ const LedDetection* findIn(const std::vector<LedDetection>& found, ModuleId modu
     return at == found.end() ? nullptr : &*at;
 }
 
-/// From the first look to the further one; nothing where too few were found by both.
-std::optional<Vector2d> shiftBetween(const ViewDetections& view, const ViewDetections& further) {
-    constexpr std::size_t kFewest = 3;
+/// From the first look to the further one; nothing where none was found by both.
+std::optional<Vector2d> motionSince(const ViewDetections& view, const ViewDetections& further) {
     std::vector<double> x;
     std::vector<double> y;
     for (const LedDetection& now : further.found) {
@@ -31,7 +30,7 @@ std::optional<Vector2d> shiftBetween(const ViewDetections& view, const ViewDetec
             y.push_back(now.pixel.y() - before->pixel.y());
         }
     }
-    if (x.size() < kFewest)
+    if (x.empty())
         return std::nullopt;
     return Vector2d(median(std::move(x)), median(std::move(y)));
 }
@@ -56,18 +55,22 @@ std::vector<ModuleId> modulesLitIn(std::span<const FrameInfo> look) {
     return {modules.begin(), modules.end()};
 }
 
-void addLook(ViewDetections& view, const ViewDetections& further, const LookOptions& options) {
+bool addLook(ViewDetections& view, const ViewDetections& further, const LookOptions& options) {
     if (!options.validate())
         throw std::logic_error("LookOptions out of range");
-    const std::optional<Vector2d> shift = shiftBetween(view, further);
+    const bool isFirst = view.found.empty();
+    const std::optional<Vector2d> shift = motionSince(view, further);
     const double moved = shift ? shift->norm() : 0;
-    if (moved > options.maxMotion_px || further.moved_px.value_or(0) > options.maxMotion_px)
-        return;
-    // Of pictures that gave nothing nothing is left that could have moved.
-    if (view.found.empty())
+    const double movedAtAll = std::max(moved, further.moved_px.value_or(0));
+    if (isFirst) {
+        // Of pictures that gave nothing nothing is left that could have moved.
         view.moved_px = further.moved_px;
-    else if (shift || further.moved_px)
-        view.moved_px = std::max({view.moved_px.value_or(0), moved, further.moved_px.value_or(0)});
+        view.look = further.look;
+    } else if (shift || further.moved_px) {
+        view.moved_px = std::max(view.moved_px.value_or(0), movedAtAll);
+    }
+    if (movedAtAll > options.maxMotion_px || (!isFirst && !shift))
+        return false;
     const std::vector<LedDetection> before = view.found;
     const auto undetected = [&](ModuleId module) {
         return std::find_if(view.undetected.begin(), view.undetected.end(),
@@ -96,12 +99,18 @@ void addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
             view.readings.push_back(further.readings[i]);
     }
     view.unexplained = further.unexplained;
-    for (const Undetected& now : further.undetected) {
+    for (Undetected now : further.undetected) {
         const auto missing = undetected(now.module);
-        if (missing != view.undetected.end() &&
-            (missing->cause == Undetected::Cause::OutOfSight || missing->cause == Undetected::Cause::CameraMoved))
-            *missing = now;
+        if (missing == view.undetected.end() ||
+            (missing->cause != Undetected::Cause::OutOfSight && missing->cause != Undetected::Cause::CameraMoved))
+            continue;
+        for (SpotChoice& spot : now.spots) {
+            spot.pixel -= shift.value_or(Vector2d::Zero());
+            spot.sigma_px = std::hypot(spot.sigma_px, 0.5 * moved);
+        }
+        *missing = std::move(now);
     }
+    return true;
 }
 
 void sortAs(std::span<const ModuleId> modules, ViewDetections& view) {

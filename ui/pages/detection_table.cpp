@@ -87,6 +87,10 @@ QWidget* DetectionTable::filterRow() {
     connect(limit_, &QDoubleSpinBox::valueChanged, filter_, &DetectionFilter::setLimit);
     for (const auto signal : {&QAbstractItemModel::rowsInserted, &QAbstractItemModel::rowsRemoved})
         connect(filter_, signal, this, &DetectionTable::countRows);
+    // A filter that hides nothing changes no rows.
+    connect(number_, &QLineEdit::textChanged, this, &DetectionTable::countRows);
+    for (const QCheckBox* box : {doubtful_, far_})
+        connect(box, &QCheckBox::toggled, this, &DetectionTable::countRows);
     return row;
 }
 

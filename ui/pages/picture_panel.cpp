@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "ui/pages/page.h"
+#include "ui/presenters/spot_evidence.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/picture_view.h"
 #include "ui/widgets/theme.h"
@@ -135,7 +136,7 @@ void PicturePanel::showPicture(const std::string& name) {
     hasPicture_ = view != nullptr && view->pictures && !view->pictures->empty();
     if (hasPicture_) {
         // The second picture of a coded scan has all LEDs on.
-        picture_->setImage(toImage((*view->pictures)[std::min<std::size_t>(1, view->pictures->size() - 1)]));
+        picture_->setImage(toImage(pictureOf(*view)));
     } else if (camera && view != nullptr) {
         QImage blank(camera->width, camera->height, QImage::Format_RGB32);
         blank.fill(QColor("#2b2f37"));

@@ -7,6 +7,7 @@
 #include <QSplitter>
 
 #include "ui/pages/detection_table.h"
+#include "ui/presenters/spot_evidence.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/picture_view.h"
 
@@ -75,9 +76,9 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     auto* looksAgain = new QCheckBox(tr("Look again"));
     looksAgain->setObjectName(QStringLiteral("looksAgain"));
     looksAgain->setChecked(presenter.looksAgain());
-    looksAgain->setToolTip(
-        tr("Where light stays in the pictures that is nobody's, those that are missing are looked for once more among "
-           "fewer others, and what a knock of the camera spoilt is scanned again"));
+    looksAgain->setToolTip(tr(
+        "After the scan, modules that were missed although something shines there are lit again in smaller groups, and "
+        "what a knock of the camera spoilt is repeated: up to 300 pictures more"));
     connect(looksAgain, &QCheckBox::toggled, this, [this](bool again) { presenter_.setLooksAgain(again); });
     top->addWidget(looksAgain);
     top->addWidget(progress_, 1);
@@ -203,7 +204,7 @@ void ScanPage::showPicture() {
     const ScannedView* view = workbench_.session().findView(presenter_.shownView());
     // The second picture of a coded scan has all LEDs on.
     if (view != nullptr && view->pictures && view->pictures->size() > 1)
-        picture_->setImage(toImage((*view->pictures)[1]));
+        picture_->setImage(toImage(pictureOf(*view)));
     else
         picture_->setImage({});
 }
@@ -228,7 +229,7 @@ void ScanPage::refresh() {
     const ScanRun& state = presenter_.state();
     const bool isBusy = presenter_.isBusy();
     const QString obstacle = presenter_.obstacle();
-    start_->setText(isBusy ? tr("Cancel") : tr("Scan this view"));
+    start_->setText(!isBusy ? tr("Scan this view") : presenter_.wanted().empty() ? tr("Cancel") : tr("Enough"));
     start_->setEnabled(isBusy || obstacle.isEmpty());
     pause_->setText(state.phase == Phase::Paused ? tr("Resume") : tr("Pause"));
     pause_->setEnabled(state.isRunning() || state.phase == Phase::Paused);
@@ -259,7 +260,9 @@ void ScanPage::refresh() {
                        .arg(*moved, 0, 'f', 1) +
                    QLatin1Char(' ') + text;
     } else if (state.phase == Phase::Failed) {
-        text = tr("Broken off: %1").arg(presenter_.why());
+        text = presenter_.isKept() ? tr("Broken off: %1. What was found before is kept as %2.")
+                                         .arg(presenter_.why(), QString::fromStdString(presenter_.shownView()))
+                                   : tr("Broken off: %1").arg(presenter_.why());
     } else {
         text = obstacle.isEmpty() ? tr("Ready: %n pictures of this view will be taken.", nullptr,
                                        static_cast<int>(presenter_.picturesOfAScan()))

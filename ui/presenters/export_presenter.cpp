@@ -124,6 +124,10 @@ std::function<std::string()> ExportPresenter::job(std::size_t format, std::share
         const bool areKnown = std::all_of(measured.views.begin(), measured.views.end(), [&](const ScannedView& view) {
             return !view.pictures || digests_.contains(view.pictures);
         });
+        std::erase_if(digests_, [&](const auto& known) {
+            return std::none_of(measured.views.begin(), measured.views.end(),
+                                [&](const ScannedView& view) { return view.pictures == known.first; });
+        });
         // What the body does not follow from would be none of its.
         if (isData && what.isTraced && (!isPreview || areKnown)) {
             if (const auto digests = digestSession(measured, decisions, digests_, context))

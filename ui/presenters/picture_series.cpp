@@ -56,6 +56,7 @@ void PictureSeries::start(LitSets lit) {
     began_ = now();
     paused_.reset();
     told_ = 0;
+    before_ = 0;
     if (workbench_.skin() != nullptr)
         workbench_.skin()->prepare(lit_);
     handle(scan_run::Start{lit_.size(), toggles()});
@@ -69,7 +70,10 @@ void PictureSeries::extend(const LitSets& more) {
     pictures_.resize(lit_.size());
     frames_.resize(lit_.size(), {{}, {}, {}, look});
     if (workbench_.skin() != nullptr)
-        workbench_.skin()->prepare(lit_);
+        workbench_.skin()->prepare(more);
+    // Time and share are of this look alone, and decoding is no picture's.
+    began_ = now();
+    before_ = state_.taken();
     handle(scan_run::Extend{more.size()});
 }
 
@@ -114,14 +118,16 @@ void PictureSeries::finish() {
 double PictureSeries::done() const {
     if (state_.phase == ScanRun::Phase::Decoding || state_.phase == ScanRun::Phase::Done)
         return 1;
-    return state_.frames == 0 ? 0 : static_cast<double>(state_.taken()) / static_cast<double>(state_.frames);
+    const std::size_t frames = state_.frames - before_;
+    const std::size_t taken = std::max(state_.taken(), before_) - before_;
+    return frames == 0 ? 0 : static_cast<double>(taken) / static_cast<double>(frames);
 }
 
 std::optional<std::chrono::milliseconds> PictureSeries::timeLeft() const {
-    if (!state_.isRunning() || state_.taken() == 0)
+    if (!state_.isRunning() || state_.taken() <= before_)
         return std::nullopt;
     const auto soFar = std::chrono::duration_cast<std::chrono::milliseconds>(now() - began_);
-    return soFar * static_cast<int>(state_.left.size()) / static_cast<int>(state_.taken());
+    return soFar * static_cast<int>(state_.left.size()) / static_cast<int>(state_.taken() - before_);
 }
 
 ScanRun::Time PictureSeries::now() const {
@@ -160,8 +166,9 @@ void PictureSeries::keep(std::size_t frame) {
 PictureSeries::Taken PictureSeries::taken() const {
     std::vector<std::size_t> order(frames_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return *frames_[a].time_s < *frames_[b].time_s; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return std::pair(frames_[a].look, *frames_[a].time_s) < std::pair(frames_[b].look, *frames_[b].time_s);
+    });
     Taken taken;
     auto pictures = std::make_shared<Pictures>();
     for (const std::size_t k : order) {

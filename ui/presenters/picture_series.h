@@ -52,8 +52,8 @@ class PictureSeries : public QObject {
     };
     [[nodiscard]] Taken taken() const;
 
-    /// Share of the pictures that are taken, and how long the rest takes at the pace so far, by the camera's clock and
-    /// without pauses; nothing at the beginning.
+    /// Of this look: share of the pictures that are taken, and how long the rest takes at the pace so far, by the
+    /// camera's clock and without pauses; nothing at the beginning.
     [[nodiscard]] double done() const;
     [[nodiscard]] std::optional<std::chrono::milliseconds> timeLeft() const;
 
@@ -86,6 +86,7 @@ class PictureSeries : public QObject {
     Pictures pictures_;              ///< one per lit set
     std::vector<FrameInfo> frames_;  ///< likewise
     std::size_t told_ = 0;           ///< by kept()
+    std::size_t before_ = 0;         ///< frames of earlier looks
     CameraFrame newest_;
     cv::Mat reference_;
     ScanRun::Time began_{0};               ///< later by as long as it paused

@@ -82,7 +82,7 @@ std::vector<QString> sentencesOf(const Decisions& decisions) {
                             (kind == LinkKind::Adjacent ? ReportWords::tr("neighbours") : ReportWords::tr("a cable")));
     }
     for (const int pose : decisions.droppedPoses)
-        sentences.push_back(ReportWords::tr("Pose %1 was dropped").arg(pose));
+        sentences.push_back(ReportWords::tr("Pose %1 was dropped").arg(pose + 1));
     for (const std::string& view : decisions.droppedViews)
         sentences.push_back(ReportWords::tr("%1 was dropped").arg(QString::fromStdString(view)));
     for (const auto& [key, decision] : decisions.detections) {

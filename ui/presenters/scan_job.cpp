@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/vision/decoder.h"
+#include "core/vision/looks.h"
 
 namespace skincal {
 namespace {
@@ -27,11 +28,14 @@ double shiftBetween(const cv::Mat& a, const cv::Mat& b) {
 
 tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
                                                  std::shared_ptr<const Pictures> pictures,
-                                                 const std::vector<ModuleId>& modules, const RunContext& context) {
+                                                 const std::vector<ModuleId>& modules, const RunContext& context,
+                                                 std::optional<ViewDetections> before) {
     const FrameLoader load = [&](std::size_t frame) -> tl::expected<cv::Mat, std::string> {
         return (*pictures)[frame];
     };
-    auto decoded = decodeView("view", modules, frames, load, {}, context);
+    const std::size_t last = beginningsOfLooks(frames).back();
+    auto decoded = before ? decodeFurther(*std::move(before), last, modules, frames, load, {}, context)
+                          : decodeView("view", modules, frames, load, {}, context);
     if (!decoded)
         return tl::unexpected(decoded.error().cancelled ? std::string() : decoded.error().message);
     ScanResult result;

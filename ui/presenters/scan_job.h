@@ -12,13 +12,15 @@ namespace skincal {
 /// A view that was scanned, and how much the camera moved meanwhile.
 struct ScanResult {
     ScannedView view;
-    double moved_px = 0;  ///< between the first and the last picture without light
+    double moved_px = 0;  ///< in the looks that count, as LEDs and pictures without light tell
 };
 
 /// Decodes the pictures of a scan. The error is a sentence; empty where it was cancelled.
+/// @param before  what all looks but the last gave, where they were decoded already
 [[nodiscard]] tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
                                                                std::shared_ptr<const Pictures> pictures,
                                                                const std::vector<ModuleId>& modules,
-                                                               const RunContext& context);
+                                                               const RunContext& context,
+                                                               std::optional<ViewDetections> before = std::nullopt);
 
 }  // namespace skincal

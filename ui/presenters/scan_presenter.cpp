@@ -66,6 +66,7 @@ void ScanPresenter::start(const std::optional<std::string>& replaced) {
     firstLook_ = lit.size();
     further_.emplace(seed);
     result_.reset();
+    isKept_ = false;
     watcher_.begin(modules(), lit);
     series_.start(std::move(lit));
 }
@@ -97,7 +98,8 @@ void ScanPresenter::setDropped(const std::string& view, bool dropped) {
 void ScanPresenter::setActive(bool active) {
     isActive_ = active;
     FrameSource* camera = workbench_.camera();
-    const bool needed = active || series_.needsCamera();
+    // While pictures are decoded, too: a further look may follow.
+    const bool needed = active || series_.isBusy();
     if (camera == nullptr || needed == isCameraRunning_)
         return;
     isCameraRunning_ = needed;
@@ -136,7 +138,7 @@ void ScanPresenter::attachCamera() {
 
 void ScanPresenter::seriesChanged() {
     emit stateChanged();
-    if (std::exchange(neededCamera_, series_.needsCamera()) != series_.needsCamera())
+    if (std::exchange(neededCamera_, series_.isBusy()) != series_.isBusy())
         setActive(isActive_);
 }
 
@@ -148,23 +150,28 @@ const std::vector<ModuleId>& ScanPresenter::wanted() const {
 void ScanPresenter::discard() {
     if (cancelled_)
         *cancelled_ = true;
-    // What breaks off a further look takes nothing from those before it.
-    if (result_ && !result_->view.decoded.found.empty() && state().phase == ScanRun::Phase::Failed)
-        deliver(*std::exchange(result_, std::nullopt));
+    std::optional<ScanResult> result = std::exchange(result_, std::nullopt);
+    // What breaks off a further look takes nothing from those before it; but another skin's pictures are nobody's.
+    const bool isOfThisSkin = state().fault != ScanRun::Fault::OtherSkin;
+    isKept_ = result && isOfThisSkin && !result->view.decoded.found.empty();
+    if (isKept_)
+        deliver(*std::move(result));
     else
         watcher_.clear();
-    result_.reset();
 }
 
 void ScanPresenter::decode() {
     cancelled_ = std::make_shared<std::atomic<bool>>(false);
     RunContext context;
     context.isCancelled = [cancelled = cancelled_] { return cancelled->load(); };
-    decoding_.setFuture(
-        QtConcurrent::run([taken = series_.taken(), modules = modules(), context = std::move(context)]() mutable {
-            return std::make_shared<Outcome>(
-                decodeScan(std::move(taken.frames), std::move(taken.pictures), modules, context));
-        }));
+    std::optional<ViewDetections> before;
+    if (result_)
+        before = result_->view.decoded;
+    decoding_.setFuture(QtConcurrent::run([taken = series_.taken(), modules = modules(), before = std::move(before),
+                                           context = std::move(context)]() mutable {
+        return std::make_shared<Outcome>(
+            decodeScan(std::move(taken.frames), std::move(taken.pictures), modules, context, before));
+    }));
 }
 
 void ScanPresenter::decodingFinished() {

@@ -30,11 +30,14 @@ class ScanPresenter : public QObject {
     void start(const std::optional<std::string>& replaced = std::nullopt);
     void pause() { series_.pause(); }
     void resume() { series_.resume(); }
+    /// In a further look it ends the scan with what the looks before it found.
     void cancel() { series_.cancel(); }
 
     /// Modules that are being looked for once more, since light was left that blinks like none that was found; empty in
     /// the first look at all of them.
     [[nodiscard]] const std::vector<ModuleId>& wanted() const;
+    /// A scan that was broken off in a further look left the view that is shown.
+    [[nodiscard]] bool isKept() const { return isKept_; }
     /// Whether to look again, where the first look leaves modules undecided.
     [[nodiscard]] bool looksAgain() const { return looksAgain_; }
     void setLooksAgain(bool again) { looksAgain_ = again; }
@@ -95,6 +98,7 @@ class ScanPresenter : public QObject {
     std::optional<FurtherLooks> further_;
     std::optional<ScanResult> result_;  ///< of all looks so far, should the next one be broken off
     bool looksAgain_ = true;
+    bool isKept_ = false;
     CameraFrame newest_;
     std::shared_ptr<std::atomic<bool>> cancelled_;
     QFutureWatcher<std::shared_ptr<Outcome>> decoding_;

@@ -71,7 +71,29 @@ cv::Mat padded(const cv::Mat& picture, const cv::Rect& inside, const cv::Rect& w
     return result;
 }
 
+/// The one that decided about a module: where it was found, or else the last in which it shone.
+std::size_t lookFor(const ScannedView& view, ModuleId module) {
+    const ViewDetections& decoded = view.decoded;
+    for (std::size_t i = 0; i < std::min(decoded.found.size(), decoded.readings.size()); ++i) {
+        if (decoded.found[i].module == module)
+            return decoded.readings[i].look;
+    }
+    std::size_t look = decoded.look;
+    for (const FrameInfo& frame : view.frames) {
+        if (isLit(frame, module))
+            look = std::max(look, frame.look);
+    }
+    return look;
+}
+
 }  // namespace
+
+const cv::Mat& pictureOf(const ScannedView& view) {
+    const auto first = std::find_if(view.frames.begin(), view.frames.end(),
+                                    [&](const FrameInfo& frame) { return frame.look == view.decoded.look; });
+    const auto dark = first == view.frames.end() ? 0 : static_cast<std::size_t>(first - view.frames.begin());
+    return (*view.pictures)[std::min(dark + 1, view.pictures->size() - 1)];
+}
 
 std::optional<SpotEvidence> evidenceOf(const ScannedView& view, ModuleId module, const Vector2d& pixel, int radius) {
     if (!view.pictures || view.pictures->empty())
@@ -83,8 +105,11 @@ std::optional<SpotEvidence> evidenceOf(const ScannedView& view, ModuleId module,
         return std::nullopt;
     Sum lit(inside.size());
     Sum dark(inside.size());
-    for (std::size_t k = 0; k < view.frames.size(); ++k)
-        (isLit(view.frames[k], module) ? lit : dark).add(toGrey((*view.pictures)[k](inside)));
+    const std::size_t look = lookFor(view, module);
+    for (std::size_t k = 0; k < view.frames.size(); ++k) {
+        if (view.frames[k].look == look)
+            (isLit(view.frames[k], module) ? lit : dark).add(toGrey((*view.pictures)[k](inside)));
+    }
     if (lit.count == 0 || dark.count == 0)
         return std::nullopt;
     SpotEvidence evidence;

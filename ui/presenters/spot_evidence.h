@@ -25,6 +25,10 @@ struct SpotEvidence {
 [[nodiscard]] std::optional<SpotEvidence> evidenceOf(const ScannedView& view, ModuleId module, const Vector2d& pixel,
                                                      int radius = 10);
 
+/// One to show detections on: the second of the first look that counts, in which most LEDs shine. The view must have
+/// pictures.
+[[nodiscard]] const cv::Mat& pictureOf(const ScannedView& view);
+
 /// Where the newest body has a module's LED in a view; empty where it has none there.
 [[nodiscard]] std::optional<OverlayModule> placeByBody(const Session& session, const std::string& view,
                                                        ModuleId module);

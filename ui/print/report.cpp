@@ -214,7 +214,9 @@ QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
     if (!facts.scans.empty())
         html += detectionsHtml(body, facts.scans);
     if (!body.generator.recording_sha256.empty())
-        html += heading(tr("Data")) + digests(body.generator.recording_sha256);
+        html += heading(tr("Data")) +
+                QStringLiteral("<p>%1</p>\n").arg(tr("Of the files as these data are written to a new folder.")) +
+                digests(body.generator.recording_sha256);
     return html + QStringLiteral("</body></html>\n");
 }
 

@@ -60,7 +60,7 @@ TEST(Looks, AFurtherOneAddsWhatItFoundInThePixelsOfTheFirst) {
     further.undetected = {missing(4, Cause::TooWeak), missing(6)};
     further.undetected[0].reason = "now";
     further.unexplained = 2;
-    addLook(view, further);
+    EXPECT_TRUE(addLook(view, further));
     sortAs(numbered(6), view);
     ASSERT_EQ(view.found.size(), 4U);
     EXPECT_EQ(view.found[1].pixel, Vector2d(200, 100)) << "what was found before stays";
@@ -81,9 +81,40 @@ TEST(Looks, AfterAKnockAFurtherOneCountsForNothing) {
     view.undetected = {missing(4)};
     ViewDetections further;
     further.found = {at(1, 102, 100), at(2, 202, 100), at(3, 302, 300), at(4, 10, 10)};
-    addLook(view, further);
+    EXPECT_FALSE(addLook(view, further));
     EXPECT_EQ(view.found.size(), 3U);
     EXPECT_EQ(view.undetected.size(), 1U);
+    EXPECT_NEAR(view.moved_px.value(), 2, 1e-9) << "who goes on must know";
+    view.unexplained = 1;
+    EXPECT_FALSE(FurtherLooks(1).next(view));
+}
+
+TEST(Looks, OneThatFindsNobodyAgainCannotTellWhereItsCameraStood) {
+    ViewDetections view;
+    view.found = {at(1, 100, 100)};
+    view.undetected = {missing(2)};
+    ViewDetections further;
+    further.found = {at(2, 300, 100)};
+    EXPECT_FALSE(addLook(view, further));
+    EXPECT_EQ(view.found.size(), 1U);
+    further.found.push_back(at(1, 100.4, 100));
+    EXPECT_TRUE(addLook(view, further)) << "one is enough";
+    ASSERT_EQ(view.found.size(), 2U);
+    EXPECT_NEAR(view.found[1].pixel.x(), 299.6, 1e-9);
+}
+
+TEST(Looks, SpotsThatAreHandedOnAreInThePixelsOfTheFirst) {
+    ViewDetections view;
+    view.found = {at(1, 100, 100)};
+    view.undetected = {missing(2)};
+    ViewDetections further;
+    further.found = {at(1, 100.4, 100)};
+    further.undetected = {missing(2, Cause::Reflected)};
+    further.undetected[0].spots = {{{50.4, 60}, 0.03, 1}, {{80.4, 60}, 0.03, 0.7}};
+    EXPECT_TRUE(addLook(view, further));
+    ASSERT_EQ(view.undetected[0].spots.size(), 2U);
+    EXPECT_NEAR(view.undetected[0].spots[1].pixel.x(), 80, 1e-9);
+    EXPECT_NEAR(view.undetected[0].spots[1].sigma_px, std::hypot(0.03, 0.2), 1e-9);
 }
 
 TEST(Looks, WhatAKnockSpoiltAltogetherIsFoundByTheNext) {
@@ -94,7 +125,9 @@ TEST(Looks, WhatAKnockSpoiltAltogetherIsFoundByTheNext) {
     further.found = {at(1, 102, 100)};
     further.undetected = {missing(2)};
     further.moved_px = 0;
-    addLook(view, further);
+    further.look = 1;
+    EXPECT_TRUE(addLook(view, further));
+    EXPECT_EQ(view.look, 1U);
     EXPECT_EQ(view.found.size(), 1U);
     EXPECT_EQ(view.moved_px, 0) << "nothing is left of the pictures before the knock";
     EXPECT_EQ(view.undetected.front().cause, Cause::OutOfSight);
@@ -105,8 +138,8 @@ TEST(Looks, TwoModulesAreNotInOnePlace) {
     view.found = {at(1, 100, 100)};
     view.undetected = {missing(2)};
     ViewDetections further;
-    further.found = {at(2, 101, 100)};
-    addLook(view, further);
+    further.found = {at(1, 100, 100), at(2, 101, 100)};
+    EXPECT_TRUE(addLook(view, further));
     EXPECT_EQ(view.found.size(), 1U);
     ASSERT_EQ(view.undetected.size(), 1U);
     EXPECT_EQ(view.undetected[0].verdict, DetectionVerdict::Ambiguous);
@@ -172,7 +205,7 @@ TEST(FurtherLooks, GoOnUntilAllAreFoundOrOutOfSight) {
             Crowd crowd(80, reach, seed);
             FurtherLookOptions options;
             options.maxFrames = 2000;
-            options.anchors = 0;  // they would be in each other's way here
+            options.anchors = 1;
             FurtherLooks further(seed, options);
             crowd.look(codedScan(numbered(80, 0), 0));
             std::size_t looks = 0;

@@ -148,6 +148,13 @@
             <numerusform>Ready: %n pictures of this view will be taken.</numerusform>
         </translation>
     </message>
+    <message numerus="yes">
+        <source>Looking again for %n modules</source>
+        <translation>
+            <numerusform>Looking again for %n module</numerusform>
+            <numerusform>Looking again for %n modules</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>skincal::ViewsPresenter</name>

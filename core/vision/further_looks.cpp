@@ -21,10 +21,13 @@ std::set<ModuleId> missingIn(const ViewDetections& view) {
     return missing;
 }
 
-/// Some of those that were found, far apart: each is the farthest from those before it.
-std::vector<ModuleId> anchorsIn(const ViewDetections& view, std::size_t most) {
+/// Some of those that were found, far apart: one, and each other is the farthest from those before it. Not always the
+/// same: who is too close to one would never be told apart from it.
+std::vector<ModuleId> anchorsIn(const ViewDetections& view, std::size_t most, std::size_t one) {
     std::vector<ModuleId> anchors;
     std::vector<double> nearest(view.found.size(), std::numeric_limits<double>::max());
+    if (!nearest.empty())
+        nearest[one % nearest.size()] = std::numeric_limits<double>::infinity();
     while (anchors.size() < std::min(most, view.found.size())) {
         const auto farthest =
             static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
@@ -97,7 +100,7 @@ std::optional<LitSets> FurtherLooks::next(const ViewDetections& view) {
     lastWanted_ = 0;
     if (waiting_.empty())
         return std::nullopt;
-    std::vector<ModuleId> lit = anchorsIn(view, options_.anchors);
+    std::vector<ModuleId> lit = anchorsIn(view, options_.anchors, 7 * looks_);
     lit.insert(lit.end(), waiting_.front().begin(), waiting_.front().end());
     ++looks_;
     LitSets look = codedScan(lit, seed_ + looks_);

@@ -8,6 +8,7 @@
 #include <QLineEdit>
 #include <QPushButton>
 #include <QTableView>
+#include <QToolButton>
 
 #include "ui/pages/page.h"
 #include "ui/pages/spot_card.h"
@@ -59,6 +60,11 @@ QWidget* DetectionTable::filterRow() {
     number_->setAccessibleName(tr("Find a module by its number"));
     number_->setToolTip(tr("Shows the modules whose number has these digits in it"));
     number_->setClearButtonEnabled(true);
+    // Qt's own button in it has neither.
+    if (auto* clear = number_->findChild<QToolButton*>()) {
+        clear->setAccessibleName(tr("Clear the number"));
+        clear->setToolTip(tr("Shows the modules of all numbers again"));
+    }
     number_->setMaximumWidth(100);
     doubtful_->setObjectName(QStringLiteral("needsALook"));
     doubtful_->setToolTip(

@@ -9,8 +9,8 @@ namespace {
 
 using namespace html;
 
-QString tr(const char* text, int count = -1) {
-    return QCoreApplication::translate("Report", text, nullptr, count);
+QString tr(const char* text) {
+    return QCoreApplication::translate("Report", text);
 }
 
 /// What became of detections in the body, by module.
@@ -66,8 +66,7 @@ QString detections(const ReportedScan& scan, const BodyModel& body) {
         cells << picture(detection.crops);
         rows += row(cells);
     }
-    return QStringLiteral("<h3>%1</h3>\n")
-               .arg(tr("%1: %n pictures", static_cast<int>(scan.pictures)).arg(escaped(scan.view))) +
+    return QStringLiteral("<h3>%1</h3>\n").arg(tr("%1: %2 pictures").arg(escaped(scan.view)).arg(scan.pictures)) +
            table({tr("Module"), tr("Pixel"), tr("σ, px"), tr("Residual, px"), tr("Verdict"), tr("Word sent, received"),
                   tr("SNR"), tr("Lead"), tr("Lit, dark, difference")},
                  rows);

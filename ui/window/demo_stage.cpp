@@ -4,6 +4,7 @@
 #include <QLabel>
 #include <QLayout>
 #include <QScreen>
+#include <cmath>
 
 #include "ui/pages/demo_page.h"
 #include "ui/scene3d/body_view_widget.h"
@@ -84,8 +85,16 @@ std::vector<ContactMark> DemoStage::contactMarks() const {
     for (const TouchContact& contact : contacts) {
         // The strongest comes first.
         const double share = contacts.front().force > 0 ? contact.force / contacts.front().force : 1;
-        if (contact.position_r && contact.normal_r)
-            marks.push_back({*contact.position_r, *contact.normal_r, (0.4 + 0.6 * share) * longest});
+        if (!contact.position_r || !contact.normal_r)
+            continue;
+        // Its board may stand out of the body.
+        const ShownModule* module = view_.layoutShown().find(contact.module);
+        const auto& heights = presenter_.picture().heights;
+        const bool isRaised = page_.isRaised() && module != nullptr && module->index < heights.size() &&
+                              std::isfinite(heights[module->index]);
+        const double height = isRaised ? heights[module->index] : 0;
+        marks.push_back(
+            {*contact.position_r + height * *contact.normal_r, *contact.normal_r, (0.4 + 0.6 * share) * longest});
     }
     return marks;
 }

@@ -54,7 +54,7 @@ TEST_F(FurtherLook, FindsThoseThatTheFirstCouldNotTellApart) {
     std::size_t found = 0;
     const auto index = desk_.rig.world().skin.indexById();
     for (const LedDetection& led : view.found) {
-        const auto truth = visiblePixel(desk_.rig.world(), desk_.rig.cameraPose(), 0, index.at(led.module));
+        const auto truth = visiblePixel(desk_.rig.world(), desk_.rig.cameraPose(), 0, index.at(led.module), {});
         ASSERT_TRUE(truth);
         EXPECT_LT((led.pixel - *truth).norm(), 0.3);
         found += std::find(wanted.begin(), wanted.end(), led.module) != wanted.end() ? 1 : 0;

@@ -49,7 +49,7 @@ QString detections(const ReportedScan& scan, const BodyModel& body) {
             const BodyObservation& observation = *found->second;
             if (observation.verdict == ObservationVerdict::Used)
                 verdict = tr("used");
-            else if (!observation.reason.empty())
+            else if (!detection.isRejected && !observation.reason.empty())
                 verdict = escaped(observation.reason);
             if (observation.residual)
                 residual = QString::number(observation.residual->norm(), 'f', 3);

@@ -61,19 +61,19 @@ TEST(ScanStudy, AKnockedCameraPutsNobodyElsewhere) {
 }
 
 TEST(ScanStudy, FurtherLooksTellLedsApartThatOneCannot) {
-    ScanScore once;
-    ScanScore again;
-    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-        for (const double apart : {6.0, 4.0, 3.0}) {
+    for (const auto& [apart, atLeast] : {std::pair(6.0, 0.98), std::pair(4.0, 0.9), std::pair(3.0, 0.5)}) {
+        ScanScore once;
+        ScanScore again;
+        for (std::uint64_t seed = 1; seed <= 2; ++seed) {
             once.add(scoreScan({Disturbance::Crowding, apart, 55, 0.8, ScanMethod::CodedOnce}, seed));
             again.add(scoreScan({Disturbance::Crowding, apart, 55, 0.8, ScanMethod::Coded}, seed));
         }
+        EXPECT_EQ(again.wrong, 0U);
+        EXPECT_LT(once.foundShare(), 0.75);
+        EXPECT_GE(again.foundShare(), atLeast);
+        std::cout << "LEDs " << apart << " px apart: " << 100 * once.foundShare() << " % found in one look, "
+                  << 100 * again.foundShare() << " % in several, of " << again.frames / again.views << " pictures\n";
     }
-    EXPECT_EQ(again.wrong, 0U);
-    EXPECT_LT(once.foundShare(), 0.5);
-    EXPECT_GE(again.foundShare(), 0.85);
-    std::cout << "LEDs 3 to 6 px apart: " << 100 * once.foundShare() << " % found in one look, "
-              << 100 * again.foundShare() << " % in several, of " << again.frames / again.views << " pictures\n";
 }
 
 TEST(ScanStudy, WhereNothingIsOpenThereIsOneLook) {

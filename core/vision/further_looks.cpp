@@ -93,7 +93,10 @@ std::optional<LitSets> FurtherLooks::next(const ViewDetections& view) {
     foundInTurn_ += lastWanted_ - wanted.size();
     if (isOpen)
         left_.insert(left_.end(), wanted.begin(), wanted.end());
-    if (looks_ > 0 && waiting_.empty() && (isSpoilt || atATime_ > 1 || foundInTurn_ > 0)) {
+    // Where many are looked for in vain it is the room that hides them, and not each other's light.
+    constexpr std::size_t kMany = 20;
+    const bool isHopeless = foundInTurn_ == 0 && (atATime_ == 1 || inTurn_ > kMany);
+    if (looks_ > 0 && waiting_.empty() && (isSpoilt || !isHopeless)) {
         atATime_ /= isSpoilt ? 1 : partsFor(foundInTurn_, inTurn_);
         beginTurn(std::exchange(left_, {}));
     }

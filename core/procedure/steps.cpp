@@ -68,11 +68,10 @@ StepState scanState(const Progress& p) {
 StepState viewsState(const Progress& p) {
     if (p.views == 0)
         return {StepStatus::Blocked, StepReason::NoViews};
+    if (!p.hasBody && p.isSolving)
+        return {StepStatus::InProgress, StepReason::Solving};
     if (!p.hasBody)
-        return {p.isSolving ? StepStatus::InProgress : StepStatus::NeedsAttention, p.isSolving ? StepReason::Solving
-                                                                                   : p.isUnsolved
-                                                                                       ? StepReason::NotSolved
-                                                                                       : StepReason::PatchesNotPlaced};
+        return {StepStatus::NeedsAttention, p.isUnsolved ? StepReason::NotSolved : StepReason::PatchesNotPlaced};
     if (p.modulesPlaced == 0 || p.patchesPlaced < p.patches)
         return {StepStatus::InProgress, StepReason::PatchesNotPlaced};
     if (p.areViewsFew)

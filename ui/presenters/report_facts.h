@@ -10,7 +10,7 @@ namespace skincal {
 /// of each view that counts what decided. Crops of at most `mostCrops` detections, those with the least lead, since
 /// they are the bulk of a report. Touches nothing but its arguments: any thread will do. Cancelled, it is left
 /// unfinished.
-void addData(ReportFacts& facts, const Measured& measured, const Decisions& decisions, std::size_t mostCrops = 400,
+void addData(ReportFacts& facts, const Measured& measured, const Decisions& decisions, std::size_t mostCrops,
              const RunContext& context = {});
 
 }  // namespace skincal

@@ -208,6 +208,8 @@ tl::expected<ViewDetections, ScanError> decodeFurther(ViewDetections view, std::
         const auto rest = frames.subspan(first);
         const std::vector<std::size_t> beginnings = beginningsOfLooks(rest);
         const auto look = rest.first(beginnings.size() > 1 ? beginnings[1] : rest.size());
+        if (const auto words = litWords(modules, look); !words)
+            return tl::unexpected(ScanError{words.error(), false});
         const auto further = decodeLook(modulesLitIn(look), look, from(first, load), options, context);
         if (!further)
             return further;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/geometry/random.h"
+#include "core/vision/decoder.h"
 #include "core/vision/further_looks.h"
 
 namespace skincal {
@@ -37,6 +38,18 @@ TEST(Looks, FollowEachOther) {
     EXPECT_THAT(beginningsOfLooks(frames), ElementsAre(0U, first, second));
     EXPECT_EQ(modulesLitIn(std::span(frames).subspan(first, second - first)), numbered(1));
     EXPECT_THAT(beginningsOfLooks({}), ElementsAre(0U));
+}
+
+TEST(Looks, ModulesThatTheSkinHasNotAreAnErrorInAnyLook) {
+    std::vector<FrameInfo> frames;
+    append(frames, codedScan(numbered(9), 1), 1);
+    const FrameLoader load = [](std::size_t) -> tl::expected<cv::Mat, std::string> {
+        return tl::unexpected(std::string("no picture"));
+    };
+    const auto known = numbered(9);
+    EXPECT_EQ(decodeFurther({}, 0, known, frames, load).error().message, "no picture");
+    const auto fewer = numbered(8);
+    EXPECT_THAT(decodeFurther({}, 0, fewer, frames, load).error().message, testing::HasSubstr("9"));
 }
 
 LedDetection at(std::uint32_t module, double x, double y) {

@@ -24,7 +24,7 @@ Json toJson(const Finding& finding) {
     json["modules"] = idsOf(finding.modules);
     json["view"] = orNull(finding.view);
     json["pose"] = orNull(finding.pose);
-    json["text"] = finding.text;
+    json["text"] = finding.text.english();
     return json;
 }
 
@@ -78,8 +78,8 @@ nlohmann::ordered_json qualityJson(const BodyModel& body) {
     json["link_mismatch_max"] = orNull(q.link_mismatch_max);
     json["gravity_residual_rms"] = orNull(q.gravity_residual_rms);
     json["condition"] = q.condition;
-    json["warnings"] = q.warnings;
-    json["missing"] = q.missing;
+    json["warnings"] = english(q.warnings);
+    json["missing"] = english(q.missing);
     json["findings"] = Json::array();
     for (const Finding& finding : q.findings)
         json["findings"].push_back(toJson(finding));
@@ -97,7 +97,7 @@ nlohmann::ordered_json qualityJson(const BodyModel& body) {
             return m.patch == patch.id && m.T_body_module.has_value();
         });
         entry["views"] = patch.views.size();
-        entry["status"] = patch.status;
+        entry["status"] = patch.status.english();
         json["patches"].push_back(std::move(entry));
     }
     return json;

@@ -50,7 +50,7 @@ std::string patchRows(const BodyModel& body) {
         const BodyPatch& patch = body.patches[k];
         text += wrapped(fmt::format("{:>5}  {:>6}  {:>7}  {:>6}  {:>5}  ", patch.id.value, patch.origin.value,
                                     patch.modules.size(), placed[patch.id], patch.views.size()),
-                        printable(patch.status));
+                        printable(patch.status.english()));
     }
     if (body.patches.size() > kMaxRows)
         text += fmt::format("  … and {} patches more\n", body.patches.size() - kMaxRows);
@@ -91,8 +91,9 @@ std::string qualityTable(const BodyModel& body, const std::vector<TableRow>& mor
         text += fmt::format("{:<18} {}\n", what, printable(value));
 
     std::set<std::string> told;
-    const auto once = [&](const char* lead, const std::string& sentence) {
-        return told.insert(sentence).second ? wrapped(lead, printable(sentence)) : "";
+    const auto once = [&](const char* lead, const Sentence& sentence) {
+        const std::string said = sentence.english();
+        return told.insert(said).second ? wrapped(lead, printable(said)) : "";
     };
     std::string findings;
     for (const Finding& finding : q.findings)
@@ -100,9 +101,9 @@ std::string qualityTable(const BodyModel& body, const std::vector<TableRow>& mor
     if (!findings.empty())
         text += "\nwhat disagrees with the rest:\n" + findings;
     std::string rest;
-    for (const std::string& missing : q.missing)
+    for (const Sentence& missing : q.missing)
         rest += once("missing: ", missing);
-    for (const std::string& warning : q.warnings)
+    for (const Sentence& warning : q.warnings)
         rest += once("warning: ", warning);
     return rest.empty() ? text : text + "\n" + rest;
 }

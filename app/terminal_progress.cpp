@@ -39,7 +39,7 @@ TerminalProgress::~TerminalProgress() {
 RunContext TerminalProgress::context() {
     RunContext context;
     context.isCancelled = interrupted;
-    context.report = [shown = shown_.get()](std::string_view stage, double done) {
+    context.report = [shown = shown_.get()](const Sentence& stage, double done) {
         using namespace std::chrono_literals;
         const auto now = Shown::Clock::now();
         if (!shown->terminal || now - shown->start < 1s || now - shown->last < 100ms)

@@ -54,7 +54,7 @@ Json toJson(const Shortfall& shortfall) {
     json["up"] = shortfall.up_r ? toJson(*shortfall.up_r) : Json();
     json["figure"] = orNull(shortfall.figure);
     json["unit"] = shortfall.unit;
-    json["text"] = shortfall.text;
+    json["text"] = shortfall.text.english();
     return json;
 }
 
@@ -63,7 +63,7 @@ Json toJson(const NextPose& pose) {
     json["up"] = toJson(pose.up_r);
     json["nearest_pose"] = pose.nearest;
     json["gain"] = toJson(pose.gain);
-    json["text"] = pose.words;
+    json["text"] = pose.words.english();
     return json;
 }
 
@@ -75,7 +75,7 @@ Json toJson(const NextView& view) {
     json["patches"] = numbers(view.patches);
     json["first_seen"] = numbers(view.firstSeen);
     json["gain"] = toJson(view.gain);
-    json["text"] = view.words;
+    json["text"] = view.words.english();
     return json;
 }
 
@@ -127,13 +127,13 @@ std::string poseText(const NextPose& pose) {
     return fmt::format(
         "turn the body until {}: up is ({:.2f}, {:.2f}, {:.2f}) in the body frame, {:.0f}° from the "
         "nearest pose there is",
-        printable(pose.words), pose.up_r.x(), pose.up_r.y(), pose.up_r.z(), pose.nearest / kDegree);
+        printable(pose.words.english()), pose.up_r.x(), pose.up_r.y(), pose.up_r.z(), pose.nearest / kDegree);
 }
 
 std::string viewText(const NextView& view) {
     const std::string first =
-        view.firstSeen.empty() ? "" : fmt::format(", {} for the first time", listed(view.firstSeen));
-    return fmt::format("{}: shows {} modules{}", printable(view.words), view.gain.modules, first);
+        view.firstSeen.empty() ? "" : fmt::format(", {} for the first time", listed(view.firstSeen).english());
+    return fmt::format("{}: shows {} modules{}", printable(view.words.english()), view.gain.modules, first);
 }
 
 std::string adviceText(const Advice& advice, std::size_t best) {
@@ -152,7 +152,7 @@ std::string adviceText(const Advice& advice, std::size_t best) {
     if (advice.shortfalls.empty())
         text += "  nothing\n";
     for (const Shortfall& shortfall : advice.shortfalls)
-        text += wrapped("  - ", printable(shortfall.text));
+        text += wrapped("  - ", printable(shortfall.text.english()));
     return text + bestText("gravity pose", advice.poses, best, poseText) +
            bestText("view", advice.views, best, viewText);
 }

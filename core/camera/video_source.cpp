@@ -19,47 +19,47 @@ struct Letter {
     Time arrival{};
 };
 
-const char* wordsOf(CameraTrouble trouble) {
+QString wordsOf(CameraTrouble trouble) {
     switch (trouble) {
         case CameraTrouble::NotPluggedIn:
-            return "the camera is not plugged in";
+            return VideoSource::tr("the camera is not plugged in");
         case CameraTrouble::Unplugged:
-            return "the camera was unplugged";
+            return VideoSource::tr("the camera was unplugged");
         case CameraTrouble::NoFirstPicture:
-            return "the camera gives no pictures";
+            return VideoSource::tr("the camera gives no pictures");
         case CameraTrouble::Silent:
-            return "no pictures come any more";
+            return VideoSource::tr("no pictures come any more");
         case CameraTrouble::Frozen:
-            return "the camera gives the same picture again and again";
+            return VideoSource::tr("the camera gives the same picture again and again");
         case CameraTrouble::TestPicture:
-            return "a test picture comes in the place of the camera's";
+            return VideoSource::tr("a test picture comes in the place of the camera's");
         case CameraTrouble::WrongSize:
-            return "the pictures are not of the size that was asked for";
+            return VideoSource::tr("the pictures are not of the size that was asked for");
         case CameraTrouble::Late:
-            return "the pictures come too late";
+            return VideoSource::tr("the pictures come too late");
         case CameraTrouble::Unsteady:
-            return "the times of the pictures do not rise";
+            return VideoSource::tr("the times of the pictures do not rise");
         case CameraTrouble::Unreadable:
-            return "the pictures cannot be read";
+            return VideoSource::tr("the pictures cannot be read");
         case CameraTrouble::Forbidden:
-            return "the camera may not be opened";
+            return VideoSource::tr("the camera may not be opened");
         case CameraTrouble::Busy:
-            return "another program uses the camera";
+            return VideoSource::tr("another program uses the camera");
         case CameraTrouble::CannotOpen:
-            return "the camera cannot be opened";
+            return VideoSource::tr("the camera cannot be opened");
         case CameraTrouble::Missing:
-            return "there is no such file";
+            return VideoSource::tr("there is no such file");
         case CameraTrouble::CannotPlay:
-            return "the video cannot be played";
+            return VideoSource::tr("the video cannot be played");
         default:
-            return "the video is over";
+            return VideoSource::tr("the video is over");
     }
 }
 
 }  // namespace
 
 QString shortReason(const CameraFailure& failure) {
-    QString text = QString::fromLatin1(wordsOf(failure.trouble));
+    QString text = wordsOf(failure.trouble);
     for (const QString& more : {failure.where, failure.detail}) {
         if (!more.isEmpty())
             text += QStringLiteral(": ") + more;

@@ -44,7 +44,7 @@ tl::expected<CameraCalibration, CalibrationError> calibrateCamera(std::span<cons
     if (views.front().size.width <= 0 || views.front().size.height <= 0)
         throw std::logic_error("calibrateCamera: pictures without a size");
     BoardSolver solver(views, plan, options, context);
-    context.report("poses of the boards", 0);
+    context.report(Sentence::saying("poses of the boards"), 0);
     solver.start();
     const auto enough = [&] { return solver.usedCount() >= static_cast<std::size_t>(options.minBoards); };
     const auto tooFew = [&] {
@@ -56,7 +56,7 @@ tl::expected<CameraCalibration, CalibrationError> calibrateCamera(std::span<cons
     for (int round = 0; round < kRounds; ++round) {
         if (!enough())
             return tooFew();
-        context.report("boards that disagree", 0.2 + 0.15 * round);
+        context.report(Sentence::saying("boards that disagree"), 0.2 + 0.15 * round);
         if (context.isCancelled())
             return tl::unexpected(CalibrationError{ErrorCode::Cancelled});
         if (auto solved = solver.solve(true); !solved)
@@ -66,12 +66,12 @@ tl::expected<CameraCalibration, CalibrationError> calibrateCamera(std::span<cons
     }
     if (!enough())
         return tooFew();
-    context.report("final estimate", 0.8);
+    context.report(Sentence::saying("final estimate"), 0.8);
     if (auto solved = solver.solve(false); !solved)
         return tl::unexpected(std::move(solved.error()));
     CameraCalibration result = solver.result();
     judgeCalibration(views, result);
-    context.report("final estimate", 1);
+    context.report(Sentence::saying("final estimate"), 1);
     return result;
 }
 

@@ -1,5 +1,6 @@
 #include "core/device/line_address.h"
 
+#include <QCoreApplication>
 #include <QFileInfo>
 
 #include "core/device/program_line.h"
@@ -8,6 +9,10 @@
 
 namespace skincal {
 namespace {
+
+struct LineWords {
+    Q_DECLARE_TR_FUNCTIONS(LineWords)
+};
 
 std::optional<int> positive(QStringView text, int most) {
     bool fine = false;
@@ -20,7 +25,7 @@ tl::expected<LineAddress, QString> parseTcp(const QString& text) {
     const qsizetype colon = rest.lastIndexOf(u':');
     const auto port = colon > 0 ? positive(QStringView(rest).mid(colon + 1), 65535) : std::nullopt;
     if (!port)
-        return tl::unexpected(QStringLiteral("\"%1\" is no address: tcp://host:port was expected").arg(text));
+        return tl::unexpected(LineWords::tr("\"%1\" is no address: tcp://host:port was expected").arg(text));
     QString host = rest.left(colon);
     if (host.startsWith(u'[') && host.endsWith(u']'))
         host = host.mid(1, host.size() - 2);  // IPv6
@@ -33,13 +38,13 @@ tl::expected<LineAddress, QString> parseSerial(const QString& text) {
         return LineAddress{LineAddress::Kind::Serial, text, LineAddress::kBaud, text};
     const auto baud = positive(QStringView(text).mid(at + 1), 50'000'000);
     if (!baud || at == 0)
-        return tl::unexpected(QStringLiteral("\"%1\" is no port: port@baud was expected").arg(text));
+        return tl::unexpected(LineWords::tr("\"%1\" is no port: port@baud was expected").arg(text));
     return LineAddress{LineAddress::Kind::Serial, text.left(at), *baud, text};
 }
 
 QString permissionHelp(const LineAddress& address) {
     const QString group = QFileInfo(SerialLine::fullPath(address.target)).group();
-    return QStringLiteral("you may not open %1: \"sudo usermod -aG %2 $USER\", then log out and in again")
+    return LineWords::tr("you may not open %1: \"sudo usermod -aG %2 $USER\", then log out and in again")
         .arg(address.target, group.isEmpty() ? QStringLiteral("dialout") : group);
 }
 
@@ -48,13 +53,13 @@ QString permissionHelp(const LineAddress& address) {
 tl::expected<LineAddress, QString> parseLineAddress(const QString& text) {
     const QString trimmed = text.trimmed();
     if (trimmed.isEmpty())
-        return tl::unexpected(QStringLiteral("a serial port, tcp://host:port or exec:command was expected"));
+        return tl::unexpected(LineWords::tr("a serial port, tcp://host:port or exec:command was expected"));
     if (trimmed.startsWith(QLatin1String("tcp://")))
         return parseTcp(trimmed);
     if (trimmed.startsWith(QLatin1String("exec:"))) {
         const QString command = trimmed.mid(5).trimmed();
         if (command.isEmpty())
-            return tl::unexpected(QStringLiteral("\"%1\" names no program").arg(trimmed));
+            return tl::unexpected(LineWords::tr("\"%1\" names no program").arg(trimmed));
         return LineAddress{LineAddress::Kind::Program, command, 0, trimmed};
     }
     return parseSerial(trimmed);
@@ -75,26 +80,26 @@ std::unique_ptr<Line> makeLine(const LineAddress& address) {
 QString lineHelp(LineFault fault, const LineAddress& address, const QString& detail) {
     switch (fault) {
         case LineFault::NoSuchPort:
-            return QStringLiteral("there is no port %1: is the adapter plugged in?").arg(address.target);
+            return LineWords::tr("there is no port %1: is the adapter plugged in?").arg(address.target);
         case LineFault::NoPermission:
             return permissionHelp(address);
         case LineFault::InUse:
-            return QStringLiteral("another program has %1 open: \"fuser -v %2\" names it")
+            return LineWords::tr("another program has %1 open: \"fuser -v %2\" names it")
                 .arg(address.target, SerialLine::fullPath(address.target));
         case LineFault::Refused:
-            return QStringLiteral("nobody listens at %1: is the gateway running?").arg(address.text);
+            return LineWords::tr("nobody listens at %1: is the gateway running?").arg(address.text);
         case LineFault::UnknownHost:
-            return QStringLiteral("there is no host \"%1\"").arg(address.target);
+            return LineWords::tr("there is no host \"%1\"").arg(address.target);
         case LineFault::NoProgram:
-            return QStringLiteral("\"%1\" could not be started: %2").arg(address.target, detail);
+            return LineWords::tr("\"%1\" could not be started: %2").arg(address.target, detail);
         case LineFault::Ended:
             switch (address.kind) {
                 case LineAddress::Kind::Serial:
-                    return QStringLiteral("%1 was unplugged").arg(address.target);
+                    return LineWords::tr("%1 was unplugged").arg(address.target);
                 case LineAddress::Kind::Tcp:
-                    return QStringLiteral("%1 hung up").arg(address.text);
+                    return LineWords::tr("%1 hung up").arg(address.text);
                 case LineAddress::Kind::Program:
-                    return QStringLiteral("\"%1\" ended%2")
+                    return LineWords::tr("\"%1\" ended%2")
                         .arg(address.target, detail.isEmpty() ? QString() : QStringLiteral(": ") + detail);
             }
             break;

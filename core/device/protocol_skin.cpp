@@ -83,7 +83,7 @@ void ProtocolSkin::close() {
 
 void ProtocolSkin::explore() {
     if (state_ != State::Open) {
-        post(this, [this] { emit failed(QStringLiteral("the skin is not open")); });
+        post(this, [this] { emit failed(tr("the skin is not open")); });
         return;
     }
     asked_ = true;
@@ -96,8 +96,7 @@ void ProtocolSkin::adopt(const SkinNetwork& network) {
     const auto skin = skinOf(network, templates_, modules_);
     if (!skin) {
         const QString type = QString::fromStdString(skin.error());
-        emit failed(
-            QStringLiteral("a cell says that it is of the type \"%1\": no module template has that name").arg(type));
+        emit failed(tr("a cell says that it is of the type \"%1\": no module template has that name").arg(type));
         return;
     }
     network_ = network;

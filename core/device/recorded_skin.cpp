@@ -33,7 +33,7 @@ void RecordedSkin::close() {
 
 void RecordedSkin::explore() {
     if (!open_) {
-        later([this] { emit failed(QStringLiteral("the skin is not open")); });
+        later([this] { emit failed(tr("the skin is not open")); });
         return;
     }
     later([this] {

@@ -27,24 +27,24 @@ constexpr double kRestBytes = 66;  ///< of a Rest frame, with its share of an ac
 QString wordsFor(SkinFault fault, const LineAddress& address) {
     switch (fault) {
         case SkinFault::NoAnswer:
-            return QStringLiteral("nothing answers at %1: is the skin powered, and is this its port?")
+            return SkinWorker::tr("nothing answers at %1: is the skin powered, and is this its port?")
                 .arg(address.text);
         case SkinFault::Garbled:
             return address.kind == LineAddress::Kind::Serial
-                       ? QStringLiteral(
+                       ? SkinWorker::tr(
                              "what comes from %1 can't be read at %2 baud: another speed (%1@115200), or no skin")
                              .arg(address.target)
                              .arg(address.number)
-                       : QStringLiteral("what comes from %1 is not the skin protocol").arg(address.text);
+                       : SkinWorker::tr("what comes from %1 is not the skin protocol").arg(address.text);
         case SkinFault::OtherVersion:
-            return QStringLiteral(
+            return SkinWorker::tr(
                        "the skin at %1 speaks another version of the protocol: update its firmware, or this "
                        "program")
                 .arg(address.text);
         case SkinFault::Stalled:
-            return QStringLiteral("the skin at %1 answers, but its cells don't").arg(address.text);
+            return SkinWorker::tr("the skin at %1 answers, but its cells don't").arg(address.text);
         case SkinFault::Silenced:
-            return QStringLiteral("the skin at %1 no longer answers").arg(address.text);
+            return SkinWorker::tr("the skin at %1 no longer answers").arg(address.text);
     }
     return {};
 }

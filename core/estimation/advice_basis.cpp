@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/estimation/module_support.h"
@@ -14,21 +13,55 @@ namespace {
 /// Fewer LEDs than this leave a view's pose open, or tell nothing else.
 constexpr std::size_t kLedsOfAView = 4;
 
-struct Side {
-    const char* first;  ///< with the view's name
-    const char* short_;
-};
-
 /// Towards the axes of a camera, in pairs +x -x, +y -y, +z -z.
-constexpr std::array<Side, 6> kSides{{{"the right of the picture of {}", "the right of the picture"},
-                                      {"the left of the picture of {}", "the left of the picture"},
-                                      {"the bottom of the picture of {}", "the bottom of the picture"},
-                                      {"the top of the picture of {}", "the top of the picture"},
-                                      {"the side away from the camera of {}", "the side away from the camera"},
-                                      {"the side facing the camera of {}", "the side facing the camera"}}};
+std::size_t sideOf(const Vector3d& v, Eigen::Index axis) {
+    return static_cast<std::size_t>(2 * axis + (v[axis] < 0 ? 1 : 0));
+}
 
-const Side& sideOf(const Vector3d& v, Eigen::Index axis) {
-    return kSides.at(static_cast<std::size_t>(2 * axis + (v[axis] < 0 ? 1 : 0)));
+Sentence isUp(std::size_t side, const std::string& view) {
+    switch (side) {
+        case 0:
+            return Sentence::saying("the right of the picture of {} is up", view);
+        case 1:
+            return Sentence::saying("the left of the picture of {} is up", view);
+        case 2:
+            return Sentence::saying("the bottom of the picture of {} is up", view);
+        case 3:
+            return Sentence::saying("the top of the picture of {} is up", view);
+        case 4:
+            return Sentence::saying("the side away from the camera of {} is up", view);
+        default:
+            return Sentence::saying("the side facing the camera of {} is up", view);
+    }
+}
+
+Sentence towards(std::size_t side) {
+    switch (side) {
+        case 0:
+            return Sentence::saying("the right of the picture");
+        case 1:
+            return Sentence::saying("the left of the picture");
+        case 2:
+            return Sentence::saying("the bottom of the picture");
+        case 3:
+            return Sentence::saying("the top of the picture");
+        case 4:
+            return Sentence::saying("the side away from the camera");
+        default:
+            return Sentence::saying("the side facing the camera");
+    }
+}
+
+/// "3, 7 and 9", "3, 7, … and 12 more".
+/// @param names  two at least.
+Sentence enumerated(const std::vector<std::string>& names) {
+    constexpr std::size_t kNamed = 8;
+    const std::size_t shown = names.size() <= kNamed ? names.size() - 1 : kNamed;
+    const auto end = names.begin() + static_cast<std::ptrdiff_t>(shown);
+    const std::string first = fmt::format("{}", fmt::join(names.begin(), end, ", "));
+    if (names.size() <= kNamed)
+        return Sentence::saying("{} and {}", first, names.back());
+    return Sentence::saying("{} and {} more", first, names.size() - kNamed);
 }
 
 }  // namespace
@@ -59,44 +92,36 @@ AdviceBasis adviceBasis(const BodySolution& solution) {
     return basis;
 }
 
-std::string listed(const std::string& one, const std::string& many, const std::vector<std::string>& names) {
-    if (names.size() == 1)
-        return one + " " + names.front();
-    constexpr std::size_t kNamed = 8;
-    std::string text = many + " ";
-    const std::size_t shown = names.size() <= kNamed ? names.size() - 1 : kNamed;
-    for (std::size_t i = 0; i < shown; ++i)
-        text += (i == 0 ? "" : ", ") + names[i];
-    if (names.size() <= kNamed)
-        return text + " and " + names.back();
-    return text + fmt::format(" and {} more", names.size() - kNamed);
-}
-
-std::string listed(const std::vector<ModuleId>& modules) {
+Sentence listed(const std::vector<ModuleId>& modules) {
+    if (modules.size() == 1)
+        return Sentence::saying("module {}", modules.front().value);
     std::vector<std::string> names;
     for (const ModuleId id : modules)
         names.push_back(std::to_string(id.value));
-    return listed("module", "modules", names);
+    return Sentence::saying("modules {}", enumerated(names));
 }
 
-std::string listed(const std::vector<PatchId>& patches) {
+Sentence listed(const std::vector<PatchId>& patches) {
+    if (patches.size() == 1)
+        return Sentence::saying("patch {}", patches.front().value);
     std::vector<std::string> names;
     for (const PatchId id : patches)
         names.push_back(std::to_string(id.value));
-    return listed("patch", "patches", names);
+    return Sentence::saying("patches {}", enumerated(names));
 }
 
-std::string listedViews(const std::vector<std::string>& views) {
+Sentence listedViews(const std::vector<std::string>& views) {
     // Many are called "view3" anyhow.
-    const bool named =
+    const bool areNamed =
         std::all_of(views.begin(), views.end(), [](const std::string& view) { return view.rfind("view", 0) == 0; });
-    const std::string text = listed("view", "views", views);
-    return named ? text.substr(text.find(' ') + 1) : text;
+    if (views.size() == 1)
+        return areNamed ? Sentence::verbatim(views.front()) : Sentence::saying("view {}", views.front());
+    return areNamed ? enumerated(views) : Sentence::saying("views {}", enumerated(views));
 }
 
-std::string wordsForUp(const Vector3d& up_r, const BodySolution& solution) {
+Sentence wordsForUp(const Vector3d& up_r, const BodySolution& solution) {
     if (solution.gauge.views.empty() || !solution.solved.T_r_v[solution.gauge.views.front()])
-        return fmt::format("({:.2f}, {:.2f}, {:.2f}) of the body frame is up", up_r.x(), up_r.y(), up_r.z());
+        return Sentence::saying("({:.2f}, {:.2f}, {:.2f}) of the body frame is up", up_r.x(), up_r.y(), up_r.z());
     const std::size_t v = solution.gauge.views.front();
     const Vector3d up_v = solution.solved.T_r_v[v]->linear().transpose() * up_r;
     Eigen::Index main = 0;
@@ -106,12 +131,11 @@ std::string wordsForUp(const Vector3d& up_r, const BodySolution& solution) {
     Eigen::Index second = 0;
     rest.cwiseAbs().maxCoeff(&second);
     const double lean = std::acos(std::clamp(std::abs(up_v[main]), 0.0, 1.0));
-    std::string text = fmt::format(fmt::runtime(sideOf(up_v, main).first), solution.measurements->views[v].name);
-    text += " is up";
+    const Sentence up = isUp(sideOf(up_v, main), solution.measurements->views[v].name);
     constexpr double kUpright = 10 * kDegree;
-    if (lean > kUpright)
-        text += fmt::format(", leaned {:.0f}° towards {}", lean / kDegree, sideOf(rest, second).short_);
-    return text;
+    if (lean <= kUpright)
+        return up;
+    return Sentence::saying("{}, leaned {:.0f}° towards {}", up, lean / kDegree, towards(sideOf(rest, second)));
 }
 
 }  // namespace skincal

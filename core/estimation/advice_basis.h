@@ -20,18 +20,16 @@ struct AdviceBasis {
 
 [[nodiscard]] AdviceBasis adviceBasis(const BodySolution& solution);
 
-/// "module 3", "modules 3, 7 and 9", "modules 3, 7, … and 12 more"; what to name them and their numbers.
-[[nodiscard]] std::string listed(const std::string& one, const std::string& many,
-                                 const std::vector<std::string>& names);
-[[nodiscard]] std::string listed(const std::vector<ModuleId>& modules);
-[[nodiscard]] std::string listed(const std::vector<PatchId>& patches);
+/// "module 3", "modules 3, 7 and 9", "modules 3, 7, … and 12 more".
+[[nodiscard]] Sentence listed(const std::vector<ModuleId>& modules);
+[[nodiscard]] Sentence listed(const std::vector<PatchId>& patches);
 /// Of views, by name.
-[[nodiscard]] std::string listedViews(const std::vector<std::string>& views);
+[[nodiscard]] Sentence listedViews(const std::vector<std::string>& views);
 
 /// How to hold the body so that `up_r` points up, seen from the view that the body frame stands in: "the left of the
 /// picture of view0 is up, leaned 25° towards the side facing the camera". In axes of the body frame where there is no
 /// such view.
 /// @param up_r  unit vector against gravity, body frame.
-[[nodiscard]] std::string wordsForUp(const Vector3d& up_r, const BodySolution& solution);
+[[nodiscard]] Sentence wordsForUp(const Vector3d& up_r, const BodySolution& solution);
 
 }  // namespace skincal

@@ -1,7 +1,5 @@
 #include "core/estimation/alternatives.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -195,7 +193,7 @@ std::vector<SolutionHistory> alternatives(const BodySolution& solution, const So
     for (const std::size_t l : doubtfulBridges(solution, misfits(solution, layout))) {
         found.push_back(history);
         found.back().refuted.resize(layout.verdicts.size());
-        found.back().refuted[l] = "taken for neighbours, their patch did not fit its pictures";
+        found.back().refuted[l] = Sentence::saying("taken for neighbours, their patch did not fit its pictures");
         if (!found.back().gaps.empty())
             found.back().gaps[l].reset();
     }
@@ -230,11 +228,14 @@ void noteMovedPatches(BodySolution& solution, const SolutionHistory& history) {
             }
         }
         const auto turn = estimateRelativeRotation(rest, own);
-        finding.text = fmt::format(
-            "patch {}: it turned{} against the rest since gravity was read, as when a joint moves: how it is turned "
-            "rests "
-            "on the camera alone",
-            patch.id.value, turn ? fmt::format(" by {:.1f}°", rotationAngle(turn->R_c_n) / kDegree) : "");
+        finding.text = turn ? Sentence::saying(
+                                  "patch {}: it turned by {:.1f}° against the rest since gravity was read, as when a "
+                                  "joint moves: how it is turned rests on the camera alone",
+                                  patch.id.value, rotationAngle(turn->R_c_n) / kDegree)
+                            : Sentence::saying(
+                                  "patch {}: it turned against the rest since gravity was read, as when a joint moves: "
+                                  "how it is turned rests on the camera alone",
+                                  patch.id.value);
         solution.estimate.findings.push_back(std::move(finding));
     }
 }

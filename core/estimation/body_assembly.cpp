@@ -1,7 +1,5 @@
 #include "core/estimation/body_assembly.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -36,9 +34,9 @@ void addModules(const Measurements& m, const GravityTable& gravity, const SkinLa
             if (!estimate.moduleTrouble.empty() && !estimate.moduleTrouble[patch.modules[i]].empty())
                 module.status = estimate.moduleTrouble[patch.modules[i]];
             else if (module.T_body_module)
-                module.status = "placed";
+                module.status = Sentence::saying("placed");
             else if (!estimate.shapes[k].T_o_u[i])
-                module.status = "orientation unknown: no usable gravity readings";
+                module.status = Sentence::saying("orientation unknown: no usable gravity readings");
             else
                 module.status = estimate.patchStatus[k];
         }
@@ -122,9 +120,9 @@ void addViews(const Measurements& m, const AdjustmentInput& input, const BodySta
             out.reason = estimate.rejectedReason[i];
         } else if (!out.residual) {
             out.verdict = ObservationVerdict::Rejected;
-            out.reason = !estimate.T_r_v[o.view]     ? "its view has no pose"
-                         : !estimate.T_r_u[o.module] ? "its module has no pose"
-                                                     : "its module lies behind the camera";
+            out.reason = !estimate.T_r_v[o.view]     ? Sentence::saying("its view has no pose")
+                         : !estimate.T_r_u[o.module] ? Sentence::saying("its module has no pose")
+                                                     : Sentence::saying("its module lies behind the camera");
         } else {
             if (const SpotVerdict* spot = spotOf(o.view, out.module))
                 out.reason = spot->reason;
@@ -174,8 +172,8 @@ void addGravityResidual(const AdjustmentInput& input, BodyState state, BodyModel
     if (typical < kStandardGravity / 2 || typical > kStandardGravity * 2) {
         body.quality.trust = Trust::NotToBeTrusted;
         body.quality.warnings.push_back(
-            fmt::format("gravity readings are {:.3g} m/s² long, gravity is {:.2f}: their unit is not m/s²", typical,
-                        kStandardGravity));
+            Sentence::saying("gravity readings are {:.3g} m/s² long, gravity is {:.2f}: their unit is not m/s²",
+                             typical, kStandardGravity));
     }
 }
 
@@ -236,13 +234,17 @@ Trust judgeUncertainty(BodyQuality& quality, const Uncertainty& found) {
         return found.position <= limit.position && found.rotation <= limit.rotation;
     };
     if (!within(kUncertaintyGood))
-        quality.warnings.push_back(
-            fmt::format("what was measured fixes modules to {:.1f} mm and {:.1f}° only: add gravity poses and views",
-                        found.position * 1e3, found.rotation / kDegree));
+        quality.warnings.push_back(Sentence::saying(
+            "what was measured fixes modules to {:.1f} mm and {:.1f}° only: add gravity poses and views",
+            found.position * 1e3, found.rotation / kDegree));
     else if (found.worstPosition > kWorstGood)
-        quality.warnings.push_back(fmt::format(
-            "what was measured fixes module {} to {:.1f} mm only: show it in a view{}", found.worst->id.value,
-            found.worstPosition * 1e3, found.worst->seen ? " from another side" : ""));
+        quality.warnings.push_back(
+            found.worst->seen
+                ? Sentence::saying(
+                      "what was measured fixes module {} to {:.1f} mm only: show it in a view from another side",
+                      found.worst->id.value, found.worstPosition * 1e3)
+                : Sentence::saying("what was measured fixes module {} to {:.1f} mm only: show it in a view",
+                                   found.worst->id.value, found.worstPosition * 1e3));
     else
         return Trust::Good;
     return within(kUncertaintyUsable) ? Trust::Usable : Trust::NotToBeTrusted;
@@ -264,12 +266,12 @@ void judge(BodyModel& body, Trust trustAtMost) {
         }
     }
     if (rejected > 0)
-        quality.warnings.push_back(fmt::format("{} of {} detections rejected", rejected, used + rejected));
+        quality.warnings.push_back(Sentence::saying("{} of {} detections rejected", rejected, used + rejected));
     const double residual = quality.residual_rms_px.value_or(0);
     const double gap = quality.link_mismatch_rms.value_or(0);
     const double gravity = quality.gravity_residual_rms.value_or(0);
     if (gravity > kGravityUsable)
-        quality.warnings.push_back(fmt::format(
+        quality.warnings.push_back(Sentence::saying(
             "gravity readings are off by {:.2f} m/s² rms: the body shook in its poses, or a joint moved", gravity));
     const Trust before = std::max(quality.trust, trustAtMost);
     if (quality.modulesPlaced == 0 || residual > kPixelUsable || gap > kLinkUsable || gravity > kGravityUsable ||

@@ -17,7 +17,7 @@ struct SpotVerdict {
     std::size_t module = 0;
     std::optional<std::size_t> pixel{};  ///< entry of AdjustmentInput::pixels; nothing where none was taken
     std::optional<Vector2d> spot{};      ///< which of them that is
-    std::string reason;                  ///< of either
+    Sentence reason;                     ///< of either
 };
 
 /// What a method hands over once its estimation is done; assembleBody makes the body model of it.
@@ -28,23 +28,23 @@ struct BodyEstimate {
     std::vector<std::optional<Isometry3d>> T_r_o;          ///< per patch
     std::vector<std::optional<Isometry3d>> T_r_v;          ///< per view
     std::vector<PatchShape> shapes;                        ///< per patch
-    std::vector<std::string> patchStatus;                  ///< per patch: "placed", or why not
-    std::vector<std::string> viewStatus;                   ///< per view
+    std::vector<Sentence> patchStatus;                     ///< per patch: "placed", or why not
+    std::vector<Sentence> viewStatus;                      ///< per view
     std::vector<std::vector<std::size_t>> patchViews;      ///< per patch: views that have a say in its pose
     std::vector<AccelerometerCalibration> accelerometers;  ///< per module; empty where not estimated
     /// Per module, body frame (BodyModule::covariance); empty where not estimated.
     std::vector<std::optional<Matrix6d>> covariances;
-    std::vector<bool> rejected;               ///< per entry of AdjustmentInput::pixels
-    std::vector<std::string> rejectedReason;  ///< likewise
+    std::vector<bool> rejected;            ///< per entry of AdjustmentInput::pixels
+    std::vector<Sentence> rejectedReason;  ///< likewise
     /// Likewise: why a detection does not count wherever it lies, being part of a finding; empty where it does.
-    std::vector<std::string> setAside;
-    std::vector<SpotVerdict> spots;          ///< where several spots blink a module's word, taken or not
-    std::vector<std::string> moduleTrouble;  ///< per module: why it has no pose though its patch has; empty where none
-    std::vector<std::size_t> notHeld;        ///< modules that nothing measured holds
-    std::vector<std::string> linkTrouble;    ///< per link of the graph: why a neighbour does not count as one
+    std::vector<Sentence> setAside;
+    std::vector<SpotVerdict> spots;       ///< where several spots blink a module's word, taken or not
+    std::vector<Sentence> moduleTrouble;  ///< per module: why it has no pose though its patch has; empty where none
+    std::vector<std::size_t> notHeld;     ///< modules that nothing measured holds
+    std::vector<Sentence> linkTrouble;    ///< per link of the graph: why a neighbour does not count as one
     std::map<std::string, double> condition;
-    std::vector<std::string> warnings;
-    std::vector<std::string> missing;
+    std::vector<Sentence> warnings;
+    std::vector<Sentence> missing;
     std::vector<Finding> findings;
     std::vector<StageReport> stages;
     std::vector<std::size_t> undecidedViews;  ///< those that could be in two places as well as not

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/adjustment/accelerometer.h"
+#include "core/geometry/sentence.h"
 #include "core/skin/skin.h"
 #include "core/vision/camera_model.h"
 
@@ -21,7 +22,7 @@ struct BodyModule {
     std::optional<Isometry3d> T_body_module;  ///< nothing where its patch could not be placed
     std::optional<Matrix6d> covariance;       ///< rotation vector then translation, body frame, rad and m
     std::optional<AccelerometerCalibration> accelerometer;
-    std::string status;  ///< "placed", or why not
+    Sentence status;  ///< "placed", or why not
     /// What its pose rests on: false where no picture that counts shows it, but links and gravity alone.
     bool seen = false;
 };
@@ -32,14 +33,14 @@ struct BodyPatch {
     std::vector<ModuleId> modules;
     std::optional<Isometry3d> T_body_patch;
     std::vector<std::string> views;  ///< those that have a say in this patch's pose
-    std::string status;              ///< "placed", or why not
+    Sentence status;                 ///< "placed", or why not
 };
 
 /// A link with its verdict.
 struct BodyLink {
     Link link;
     LinkKind kind = LinkKind::Adjacent;
-    std::string reason;
+    Sentence reason;
     std::optional<double> distance;  ///< between the two link points in the result, m
 };
 
@@ -50,7 +51,7 @@ struct BodyObservation {
     std::optional<Vector2d> pixel;
     std::optional<Vector2d> residual;  ///< measured minus predicted, px
     ObservationVerdict verdict = ObservationVerdict::Used;
-    std::string reason;  ///< of any verdict but used, and where one of several spots was taken
+    Sentence reason;  ///< of any verdict but used, and where one of several spots was taken
 };
 
 struct BodyView {
@@ -58,7 +59,7 @@ struct BodyView {
     std::optional<Isometry3d> T_body_camera;
     std::optional<double> residual_rms_px;
     std::vector<BodyObservation> observations;
-    std::string status;  ///< "placed", or why not
+    Sentence status;  ///< "placed", or why not
 };
 
 /// Something that disagrees with the rest of what was measured, and does not count in the result.
@@ -77,7 +78,7 @@ struct Finding {
     std::vector<ModuleId> modules{};
     std::optional<std::string> view{};
     std::optional<int> pose{};
-    std::string text;  ///< plain English, with the numbers that decided
+    Sentence text;  ///< with the numbers that decided
 };
 
 /// "moved module" and so on, in files as in print.
@@ -110,8 +111,8 @@ struct BodyQuality {
     std::optional<double> link_mismatch_max;     ///< m
     std::optional<double> gravity_residual_rms;  ///< m/s^2
     std::map<std::string, double> condition;     ///< of each estimate, by name
-    std::vector<std::string> warnings;
-    std::vector<std::string> missing;  ///< what the data lack for the modules that are not placed
+    std::vector<Sentence> warnings;
+    std::vector<Sentence> missing;  ///< what the data lack for the modules that are not placed
     std::vector<Finding> findings;
     std::vector<StageReport> stages;
     Trust trust = Trust::Good;

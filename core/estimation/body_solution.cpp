@@ -1,11 +1,9 @@
 #include "core/estimation/body_solution.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <set>
 
+#include "core/estimation/advice_basis.h"
 #include "core/estimation/missing_data.h"
 #include "core/estimation/module_support.h"
 #include "core/estimation/observability.h"
@@ -33,9 +31,9 @@ void reportOwnGravity(BodySolution& solution) {
         estimate.trustAtMost = isAnyHeld ? Trust::Usable : Trust::NotToBeTrusted;
         if (!isNamed(estimate, Finding::Kind::MovedPatch, solution.input.skin->modules[patch.modules.front()].id))
             estimate.warnings.push_back(
-                fmt::format("patch {}: gravity disagrees with the other patches or is too alike in all poses; its "
-                            "rotation rests on the camera alone",
-                            patch.id.value));
+                Sentence::saying("patch {}: gravity disagrees with the other patches or is too alike in all poses; its "
+                                 "rotation rests on the camera alone",
+                                 patch.id.value));
     }
 }
 
@@ -45,8 +43,8 @@ void reportNoisyAccelerometers(BodySolution& solution) {
         const ModuleId id = solution.input.skin->modules[noisy.module].id;
         if (!isNamed(estimate, Finding::Kind::NoisyAccelerometer, id))
             estimate.warnings.push_back(
-                fmt::format("module {}: its accelerometer is off by {:.2f} m/s² rms, the others by {:.2f}", id.value,
-                            noisy.sigma, solution.shapes.accelerometerSigma));
+                Sentence::saying("module {}: its accelerometer is off by {:.2f} m/s² rms, the others by {:.2f}",
+                                 id.value, noisy.sigma, solution.shapes.accelerometerSigma));
     }
 }
 
@@ -54,41 +52,51 @@ void reportMissing(BodySolution& solution, const Measurements& measurements, con
                    const PatchPoseOptions& pose) {
     BodyEstimate& estimate = solution.estimate;
     const Skin& skin = measurements.skin;
-    std::vector<std::string> takenOut;
+    std::vector<ModuleId> takenOut;
     for (std::size_t u = 0; u < estimate.moduleTrouble.size(); ++u) {
         if (!estimate.moduleTrouble[u].empty())
-            takenOut.push_back(std::to_string(skin.modules[u].id.value));
+            takenOut.push_back(skin.modules[u].id);
     }
     if (!takenOut.empty())
-        estimate.missing.push_back(fmt::format(
-            "modules {} have no pose: they do not fit the rest, see what disagrees; mend or rewire them, or scan again",
-            fmt::join(takenOut, ", ")));
+        estimate.missing.push_back(
+            takenOut.size() == 1
+                ? Sentence::saying(
+                      "{} has no pose: it does not fit the rest, see what disagrees; mend or rewire it, or scan "
+                      "again",
+                      listed(takenOut))
+                : Sentence::saying(
+                      "{} have no pose: they do not fit the rest, see what disagrees; mend or rewire them, or "
+                      "scan again",
+                      listed(takenOut)));
     const bool anyPlaced =
         std::any_of(state.T_r_u.begin(), state.T_r_u.end(), [](const auto& T) { return T.has_value(); });
     for (std::size_t k = 0; k < solution.layout.patches.size(); ++k) {
         const Patch& patch = solution.layout.patches[k];
         if (solution.body.T_r_o[k]) {
-            estimate.patchStatus[k] = "placed";
+            estimate.patchStatus[k] = Sentence::saying("placed");
             continue;
         }
         estimate.patchStatus[k] = solution.evidence[k].mostDetected > 0 && solution.evidence[k].mostUsable == 0
-                                      ? "gravity does not tell its shape"
-                                      : "not seen with a placed patch";
+                                      ? Sentence::saying("gravity does not tell its shape")
+                                      : Sentence::saying("not seen with a placed patch");
         estimate.missing.push_back(whyNotPlaced(skin, patch, solution.evidence[k], pose.minInliers, anyPlaced));
     }
     for (std::size_t v = 0; v < solution.body.T_r_v.size(); ++v) {
-        estimate.viewStatus[v] =
-            solution.body.T_r_v[v] ? "placed" : "shows no placed patch well enough, or could be in two places";
+        estimate.viewStatus[v] = solution.body.T_r_v[v]
+                                     ? Sentence::saying("placed")
+                                     : Sentence::saying("shows no placed patch well enough, or could be in two places");
         if (!solution.body.T_r_v[v] && anyPlaced)
             estimate.warnings.push_back(
-                fmt::format("view {} is not used: it {}", measurements.views[v].name, estimate.viewStatus[v]));
+                Sentence::saying("view {} is not used: it {}", measurements.views[v].name, estimate.viewStatus[v]));
     }
     if (!estimate.undecidedViews.empty()) {
         estimate.trustAtMost = Trust::Usable;
-        estimate.warnings.push_back(fmt::format(
-            "{} a flat patch alone and could be in two places: the likelier was taken",
-            estimate.undecidedViews.size() == 1 ? "1 view shows"
-                                                : fmt::format("{} views show", estimate.undecidedViews.size())));
+        estimate.warnings.push_back(
+            estimate.undecidedViews.size() == 1
+                ? Sentence::saying("1 view shows a flat patch alone and could be in two places: the likelier was taken")
+                : Sentence::saying(
+                      "{} views show a flat patch alone and could be in two places: the likelier was taken",
+                      estimate.undecidedViews.size()));
     }
     reportOwnGravity(solution);
     for (const Finding& finding : estimate.findings)
@@ -125,7 +133,7 @@ void placePatchFrames(BodySolution& solution, const BodyState& state) {
         const bool anyPlaced = std::any_of(patch.modules.begin(), patch.modules.end(),
                                            [&](std::size_t u) { return state.T_r_u[u].has_value(); });
         if (!anyPlaced && solution.estimate.patchStatus[k] == "placed")
-            solution.estimate.patchStatus[k] = "none of its modules is placed";
+            solution.estimate.patchStatus[k] = Sentence::saying("none of its modules is placed");
         if (!solution.estimate.T_r_o[k])
             continue;
         for (std::size_t i = 0; i < patch.modules.size(); ++i) {
@@ -173,7 +181,7 @@ void rejectFarDetections(BodySolution& solution, double sigmas) {
         estimate.rejectedReason[i] = estimate.setAside[i];
         if (far && estimate.setAside[i].empty())
             estimate.rejectedReason[i] =
-                fmt::format("{:.1f} px from where the body has it, {:.0f} sigma", r->norm(), r->norm() / sigma);
+                Sentence::saying("{:.1f} px from where the body has it, {:.0f} sigma", r->norm(), r->norm() / sigma);
     }
 }
 

@@ -1,7 +1,5 @@
 #include "core/estimation/gravity_shortfall.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -75,10 +73,13 @@ Shortfall missing(const std::vector<std::size_t>& modules, const BodySolution& s
     Shortfall shortfall{Shortfall::Kind::GravityMissing};
     name(shortfall, modules, solution);
     const bool all = modules.size() == solution.layout.patchOf.size();
-    shortfall.text = fmt::format(
+    const Sentence who = all                   ? Sentence::saying("no module has")
+                         : modules.size() == 1 ? Sentence::saying("{} has no", listed(shortfall.modules))
+                                               : Sentence::saying("{} have no", listed(shortfall.modules));
+    shortfall.text = Sentence::saying(
         "{} gravity readings in two poses or more, which tell how modules are turned: read the accelerometers in three "
         "poses at least, better six, each with another side up",
-        all ? "no module has" : listed(shortfall.modules) + (modules.size() == 1 ? " has no" : " have no"));
+        who);
     return shortfall;
 }
 
@@ -102,16 +103,24 @@ Shortfall alike(const std::vector<WeakModule>& weak, const BodySolution& solutio
     shortfall.up_r = directionToAdd(weak, basis, solution.weights, options.directions);
     const bool most = 2 * modules.size() > solution.layout.patchOf.size();
     constexpr double kNotAtAll = 40 * kDegree;
-    const std::string known = sigma > kNotAtAll
-                                  ? "unknown about one axis"
-                                  : fmt::format("known to {:.1f}° only about their worst axis", sigma / kDegree);
-    const std::string such =
-        shortfall.up_r ? fmt::format(", such as one in which {}", wordsForUp(*shortfall.up_r, solution)) : "";
-    shortfall.text = fmt::format(
-        "gravity poses are too few or too alike{} ({}, tilted by at most {:.0f}°): how modules are turned is {}; "
-        "add poses that tilt the body by about 90° from those there are{}",
-        most ? "" : " for " + listed(shortfall.modules), poses == 1 ? "1 pose" : fmt::format("{} poses", poses),
-        median(std::move(tilts)) / kDegree, known, such);
+    const Sentence known = sigma > kNotAtAll
+                               ? Sentence::saying("unknown about one axis")
+                               : Sentence::saying("known to {:.1f}° only about their worst axis", sigma / kDegree);
+    const Sentence which =
+        most ? Sentence::saying("gravity poses are too few or too alike")
+             : Sentence::saying("gravity poses are too few or too alike for {}", listed(shortfall.modules));
+    const Sentence count = poses == 1 ? Sentence::saying("1 pose") : Sentence::saying("{} poses", poses);
+    const double tilt = median(std::move(tilts)) / kDegree;
+    shortfall.text =
+        shortfall.up_r
+            ? Sentence::saying(
+                  "{} ({}, tilted by at most {:.0f}°): how modules are turned is {}; add poses that tilt the "
+                  "body by about 90° from those there are, such as one in which {}",
+                  which, count, tilt, known, wordsForUp(*shortfall.up_r, solution))
+            : Sentence::saying(
+                  "{} ({}, tilted by at most {:.0f}°): how modules are turned is {}; add poses that tilt the "
+                  "body by about 90° from those there are",
+                  which, count, tilt, known);
     return shortfall;
 }
 

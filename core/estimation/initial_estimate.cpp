@@ -39,7 +39,7 @@ void findCandidates(Work& run) {
             found[s] = estimatePatchPoses(run.sightings[s].leds, run.measurements->camera, run.options.pose);
         },
         [&](std::size_t s) {
-            run.context.report("patch poses", static_cast<double>(s) / static_cast<double>(count));
+            run.context.report(Sentence::saying("patch poses"), static_cast<double>(s) / static_cast<double>(count));
             return !run.context.isCancelled();
         });
     for (std::size_t s = 0; s < count; ++s) {

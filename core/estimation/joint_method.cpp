@@ -110,7 +110,7 @@ tl::expected<BodySolution, CalibrationError> solveWithHistory(const Measurements
                                                               const GravityTable& gravity, SolutionHistory& history,
                                                               const JointMethodOptions& options,
                                                               const RunContext& context) {
-    std::vector<std::string> known = history.refuted;
+    std::vector<Sentence> known = history.refuted;
     auto solution = solveOnce(measurements, gravity, history, options, context);
     constexpr int kMostRounds = 3;
     for (int round = 0; solution && history.refuted != known && round < kMostRounds; ++round) {

@@ -118,7 +118,7 @@ tl::expected<std::optional<SolutionReview>, CalibrationError> refineJointly(Body
     std::optional<SolutionReview> review;
     rejectFarDetections(solution, options.rejectionSigmas);
     for (int i = 0; i < options.maxReweightings; ++i) {
-        context.report("weighing the measurements", static_cast<double>(i) / options.maxReweightings);
+        context.report(Sentence::saying("weighing the measurements"), static_cast<double>(i) / options.maxReweightings);
         AdjustmentInput used = usedMeasurements(solution);
         const auto took = adjustSolution(solution, used, context);
         if (!took && took.error().code == ErrorCode::TooFewPoints)

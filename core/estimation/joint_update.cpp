@@ -52,7 +52,7 @@ void movePoses(BodySolution& next, const GravityTable& before, const GravityTabl
 
 /// Detections as they are now; those that were part of a finding stay set aside.
 void replaceDetections(BodySolution& next, const Measurements& measurements) {
-    std::map<std::pair<std::size_t, std::size_t>, std::string> setAside;
+    std::map<std::pair<std::size_t, std::size_t>, Sentence> setAside;
     for (std::size_t i = 0; i < next.input.pixels.size(); ++i) {
         if (!next.estimate.setAside[i].empty())
             setAside[{next.input.pixels[i].view, next.input.pixels[i].module}] = next.estimate.setAside[i];

@@ -1,14 +1,14 @@
 #include "core/estimation/missing_data.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include "core/estimation/advice_basis.h"
 
 namespace skincal {
 namespace {
 
-std::string leds(std::size_t count) {
-    return fmt::format("{} LED{}", count, count == 1 ? "" : "s");
+Sentence leds(std::size_t count) {
+    return count == 1 ? Sentence::saying("1 LED") : Sentence::saying("{} LEDs", count);
 }
 
 }  // namespace
@@ -57,52 +57,53 @@ NotPlaced reasonNotPlaced(const Patch& patch, const PatchEvidence& evidence, int
     return anyPlaced ? NotPlaced::NeverWithPlaced : NotPlaced::TwoPlaces;
 }
 
-std::string whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed,
-                         bool anyPlaced) {
-    const std::string who = fmt::format("patch {} (origin {})", patch.id.value, skin.modules[patch.origin].id.value);
+Sentence whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed, bool anyPlaced) {
+    const Sentence who = Sentence::saying("patch {} (origin {})", patch.id.value, skin.modules[patch.origin].id.value);
     switch (reasonNotPlaced(patch, evidence, needed, anyPlaced)) {
         case NotPlaced::Unseen:
-            return who + " was seen in no view: add one that shows it" + (anyPlaced ? " beside a placed patch" : "");
+            return anyPlaced
+                       ? Sentence::saying("{} was seen in no view: add one that shows it beside a placed patch", who)
+                       : Sentence::saying("{} was seen in no view: add one that shows it", who);
         case NotPlaced::ShapeUnknown:
-            return fmt::format(
+            return Sentence::saying(
                 "{} showed {} in a view, but {} of their modules have gravity readings that tell how they lie: read "
                 "their accelerometers in two poses or more that tilt the body differently",
                 who, leds(evidence.mostDetected),
-                evidence.mostUsable == 0 ? "none" : fmt::format("only {}", evidence.mostUsable));
+                evidence.mostUsable == 0 ? Sentence::saying("none") : Sentence::saying("only {}", evidence.mostUsable));
         case NotPlaced::TooSmall:
-            return fmt::format(
+            return Sentence::saying(
                 "{} has {} of the {} LEDs that a pose takes: show it in two views or more in which other patches are "
                 "placed",
                 who, patch.modules.size(), needed);
         case NotPlaced::TooFewLeds:
-            return fmt::format(
+            return Sentence::saying(
                 "{} showed at most {} in a view, {} are needed: move the camera closer or more in front of it", who,
                 leds(evidence.mostUsable), needed);
         case NotPlaced::OnALine:
-            return who + " showed only LEDs in one line, which have no pose: add a view that shows more of it";
+            return Sentence::saying(
+                "{} showed only LEDs in one line, which have no pose: add a view that shows more of it", who);
         case NotPlaced::Contradicted:
-            return who +
-                   " is nowhere where its shape explains the LEDs: its links, module types or detections are wrong";
+            return Sentence::saying(
+                "{} is nowhere where its shape explains the LEDs: its links, module types or detections are wrong",
+                who);
         case NotPlaced::TwoPlaces:
-            return who + " could be in two places in each view: add one that shows it more from the side";
+            return Sentence::saying("{} could be in two places in each view: add one that shows it more from the side",
+                                    who);
         default:
-            return who + " was never seen with a placed patch: add a view that shows both";
+            return Sentence::saying("{} was never seen with a placed patch: add a view that shows both", who);
     }
 }
 
-std::string whyNotHeld(const Skin& skin, const std::vector<std::size_t>& modules) {
+Sentence whyNotHeld(const Skin& skin, const std::vector<std::size_t>& modules) {
     if (modules.empty())
-        return "";
-    constexpr std::size_t kNamed = 8;
-    std::string names;
-    for (std::size_t i = 0; i < std::min(kNamed, modules.size()); ++i)
-        names += (i == 0 ? "" : ", ") + std::to_string(skin.modules[modules[i]].id.value);
-    if (modules.size() > kNamed)
-        names += fmt::format(" and {} more", modules.size() - kNamed);
-    return fmt::format(
-        "modules {}: no gravity readings tell how they lie, and links and pictures do not hold them: read their "
+        return {};
+    std::vector<ModuleId> ids;
+    for (const std::size_t u : modules)
+        ids.push_back(skin.modules[u].id);
+    return Sentence::saying(
+        "{}: no gravity readings tell how they lie, and links and pictures do not hold them: read their "
         "accelerometers in two poses or more that tilt the body differently",
-        names);
+        listed(ids));
 }
 
 }  // namespace skincal

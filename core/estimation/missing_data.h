@@ -37,11 +37,11 @@ enum class NotPlaced {
 /// @param anyPlaced    false where nothing of the body could be placed.
 [[nodiscard]] NotPlaced reasonNotPlaced(const Patch& patch, const PatchEvidence& evidence, int needed, bool anyPlaced);
 
-/// What an operator has to do about a patch that could not be placed, in plain English; parameters as above.
-[[nodiscard]] std::string whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed,
-                                       bool anyPlaced);
+/// What an operator has to do about a patch that could not be placed; parameters as above.
+[[nodiscard]] Sentence whyNotPlaced(const Skin& skin, const Patch& patch, const PatchEvidence& evidence, int needed,
+                                    bool anyPlaced);
 
 /// The same for modules of placed patches that nothing measured holds; empty where there are none.
-[[nodiscard]] std::string whyNotHeld(const Skin& skin, const std::vector<std::size_t>& modules);
+[[nodiscard]] Sentence whyNotHeld(const Skin& skin, const std::vector<std::size_t>& modules);
 
 }  // namespace skincal

@@ -1,9 +1,6 @@
 #include "core/estimation/next_measurement.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -81,8 +78,21 @@ double nearestPose(const BodyState& complete, const Vector3d& up_r) {
     return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-/// For a person behind the camera: which way to carry it from where it stood, in that picture's directions.
-std::string awayFromViews(const BodySolution& solution, const AdviceBasis& basis, const Vector3d& place) {
+/// One axis of a way in a picture's directions.
+Sentence inWords(const Vector3d& way_cm, Eigen::Index axis) {
+    const double length = std::abs(way_cm[axis]);
+    const bool isBack = way_cm[axis] < 0;
+    if (axis == 0)
+        return isBack ? Sentence::saying("{:.0f} cm left", length) : Sentence::saying("{:.0f} cm right", length);
+    if (axis == 1)
+        return isBack ? Sentence::saying("{:.0f} cm up", length) : Sentence::saying("{:.0f} cm down", length);
+    return isBack ? Sentence::saying("{:.0f} cm back", length) : Sentence::saying("{:.0f} cm forward", length);
+}
+
+/// What a view looks at, and, for a person behind the camera, which way to carry it from where it stood, in that
+/// picture's directions.
+Sentence awayFromViews(const BodySolution& solution, const AdviceBasis& basis, const Sentence& words,
+                       const Vector3d& place) {
     std::optional<std::size_t> nearest;
     const auto distance = [&](std::size_t v) { return (basis.state.T_r_v[v]->translation() - place).norm(); };
     for (std::size_t v = 0; v < basis.state.T_r_v.size(); ++v) {
@@ -90,20 +100,20 @@ std::string awayFromViews(const BodySolution& solution, const AdviceBasis& basis
             nearest = v;
     }
     if (!nearest)
-        return "";
+        return words;
     const Vector3d way_cm = 100 * (basis.state.T_r_v[*nearest]->inverse() * place);
-    constexpr std::array<std::array<const char*, 2>, 3> kWays{{{"right", "left"}, {"down", "up"}, {"forward", "back"}}};
     // What is small beside the rest is lost in the hand.
     const double least_cm = std::max(1.0, 0.2 * way_cm.norm());
-    std::vector<std::string> ways;
+    Sentence ways;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        if (std::abs(way_cm[axis]) >= least_cm)
-            ways.push_back(fmt::format("{:.0f} cm {}", std::abs(way_cm[axis]),
-                                       kWays[static_cast<std::size_t>(axis)][way_cm[axis] < 0 ? 1 : 0]));
+        if (std::abs(way_cm[axis]) < least_cm)
+            continue;
+        const Sentence way = inWords(way_cm, axis);
+        ways = ways.empty() ? way : Sentence::saying("{}, {}", ways, way);
     }
     const std::string& view = solution.measurements->views[*nearest].name;
-    return ways.empty() ? fmt::format(": where the camera of {} was", view)
-                        : fmt::format(": {} from where the camera of {} was", fmt::join(ways, ", "), view);
+    return ways.empty() ? Sentence::saying("{}: where the camera of {} was", words, view)
+                        : Sentence::saying("{}: {} from where the camera of {} was", words, ways, view);
 }
 
 struct SeenCandidate {
@@ -172,7 +182,8 @@ tl::expected<std::vector<NextPose>, CalibrationError> rankNextPoses(const BodySo
     std::vector<NextPose> ranked;
     const auto directions = evenDirections(affordable(options.directions, basis, options));
     for (std::size_t i = 0; i < directions.size(); ++i) {
-        context.report("trying gravity poses", static_cast<double>(i) / static_cast<double>(directions.size()));
+        context.report(Sentence::saying("trying gravity poses"),
+                       static_cast<double>(i) / static_cast<double>(directions.size()));
         if (context.isCancelled())
             return failure(ErrorCode::Cancelled);
         std::vector<GravityReading> readings = solution.measurements->gravity;
@@ -217,7 +228,8 @@ tl::expected<std::vector<NextView>, CalibrationError> rankNextViews(const BodySo
     std::vector<NextView> ranked;
     const auto candidates = promisingViews(solution, *ground, dark, options);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        context.report("trying views", static_cast<double>(i) / static_cast<double>(candidates.size()));
+        context.report(Sentence::saying("trying views"),
+                       static_cast<double>(i) / static_cast<double>(candidates.size()));
         if (context.isCancelled())
             return failure(ErrorCode::Cancelled);
         const SeenCandidate& seen = candidates[i];
@@ -240,7 +252,7 @@ tl::expected<std::vector<NextView>, CalibrationError> rankNextViews(const BodySo
             return tl::unexpected(after.error());
         ranked.push_back({seen.candidate.T_r_v, seen.candidate.patches, std::move(firstSeen),
                           gainOf(ground->before, *after, seen.leds),
-                          seen.candidate.words + awayFromViews(solution, basis, seen.candidate.T_r_v.translation())});
+                          awayFromViews(solution, basis, seen.candidate.words, seen.candidate.T_r_v.translation())});
     }
     sortByGain(ranked);
     return ranked;

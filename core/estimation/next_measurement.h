@@ -28,7 +28,7 @@ struct NextPose {
     Vector3d up_r = Vector3d::UnitZ();  ///< unit vector against gravity, body frame
     double nearest = 0;                 ///< rad, to the nearest pose there is; pi where there is none
     ForecastGain gain;
-    std::string words;  ///< how to hold the body (wordsForUp)
+    Sentence words;  ///< how to hold the body (wordsForUp)
 };
 
 struct NextView {
@@ -36,7 +36,7 @@ struct NextView {
     std::vector<PatchId> patches;     ///< that it looks at
     std::vector<ModuleId> firstSeen;  ///< placed modules that no view looked at so far
     ForecastGain gain;
-    std::string words;  ///< where to put the camera, and which way that is from where it stood before
+    Sentence words;  ///< where to put the camera, and which way that is from where it stood before
 };
 
 struct NextMeasurementOptions {

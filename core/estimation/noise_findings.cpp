@@ -1,7 +1,5 @@
 #include "core/estimation/noise_findings.h"
 
-#include <fmt/format.h>
-
 namespace skincal {
 
 void noteNoiseFindings(BodySolution& solution) {
@@ -18,7 +16,7 @@ void noteNoiseFindings(BodySolution& solution) {
         Finding finding;
         finding.kind = Finding::Kind::ShakenPose;
         finding.pose = input.gravity->poseNumber(p);
-        finding.text = fmt::format(
+        finding.text = Sentence::saying(
             "pose {}: the body did not rest: its readings are {:.0f} times as noisy as those of the other poses and "
             "count "
             "as much less",
@@ -31,9 +29,9 @@ void noteNoiseFindings(BodySolution& solution) {
         Finding finding;
         finding.kind = Finding::Kind::NoisyAccelerometer;
         finding.modules = {input.skin->modules[u].id};
-        finding.text =
-            fmt::format("module {}: its accelerometer is {:.0f} times as noisy as the others and counts as much less",
-                        finding.modules.front().value, input.moduleNoise[u]);
+        finding.text = Sentence::saying(
+            "module {}: its accelerometer is {:.0f} times as noisy as the others and counts as much less",
+            finding.modules.front().value, input.moduleNoise[u]);
         solution.estimate.findings.push_back(std::move(finding));
     }
     for (std::size_t v = 0; v < input.viewNoise.size(); ++v) {
@@ -42,7 +40,7 @@ void noteNoiseFindings(BodySolution& solution) {
         Finding finding;
         finding.kind = Finding::Kind::UnsteadyView;
         finding.view = solution.measurements->views[v].name;
-        finding.text = fmt::format(
+        finding.text = Sentence::saying(
             "view {}: its detections are {:.1f} times less exact than those of the other views and count as much less: "
             "the "
             "camera moved, or was out of focus",

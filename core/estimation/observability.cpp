@@ -1,7 +1,5 @@
 #include "core/estimation/observability.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <stdexcept>
 
@@ -27,7 +25,7 @@ void findFewViews(ShortfallSearch& search) {
 }
 
 void reportModules(ShortfallSearch& search, Shortfall::Kind kind, const std::vector<std::size_t>& modules,
-                   const std::optional<BodyPrecision>& precision, const char* one, const char* many) {
+                   const std::optional<BodyPrecision>& precision, const Sentence& why) {
     if (modules.empty())
         return;
     Shortfall shortfall{kind};
@@ -36,25 +34,30 @@ void reportModules(ShortfallSearch& search, Shortfall::Kind kind, const std::vec
         shortfall.modules.push_back(search.id(u));
         sigma = std::max(sigma, precision ? precision->sigma(u) : 0);
     }
-    std::string figure;
+    const bool one = modules.size() == 1;
+    Sentence how = one ? Sentence::saying("{} is placed by gravity and links alone", listed(shortfall.modules))
+                       : Sentence::saying("{} are placed by gravity and links alone", listed(shortfall.modules));
     if (precision) {
         shortfall.figure = sigma * 1e3;
         shortfall.unit = "mm";
-        figure = fmt::format(" ({}±{:.2f} mm)", modules.size() == 1 ? "" : "up to ", sigma * 1e3);
+        how = one ? Sentence::saying("{} (±{:.2f} mm)", how, *shortfall.figure)
+                  : Sentence::saying("{} (up to ±{:.2f} mm)", how, *shortfall.figure);
     }
-    shortfall.text = fmt::format("{} placed by gravity and links alone{}, for {}",
-                                 listed(shortfall.modules) + (modules.size() == 1 ? " is" : " are"), figure,
-                                 modules.size() == 1 ? one : many);
+    shortfall.text = Sentence::saying("{}, for {}", how, why);
     search.found.push_back(std::move(shortfall));
 }
 
 void findDarkModules(ShortfallSearch& search, const std::optional<BodyPrecision>& precision) {
     const UnseenModules dark = unseenModules(search.basis, {});
     reportModules(search, Shortfall::Kind::ModulesUnseen, dark.unseen, precision,
-                  "no view looks at it: add one that does", "no view looks at them: add one that does");
-    reportModules(search, Shortfall::Kind::ModulesHidden, dark.hidden, precision,
-                  "the views that look at it do not show it: it is covered, or its LED is broken",
-                  "the views that look at them do not show them: they are covered, or their LEDs are broken");
+                  dark.unseen.size() == 1 ? Sentence::saying("no view looks at it: add one that does")
+                                          : Sentence::saying("no view looks at them: add one that does"));
+    reportModules(
+        search, Shortfall::Kind::ModulesHidden, dark.hidden, precision,
+        dark.hidden.size() == 1
+            ? Sentence::saying("the views that look at it do not show it: it is covered, or its LED is broken")
+            : Sentence::saying(
+                  "the views that look at them do not show them: they are covered, or their LEDs are broken"));
 }
 
 /// The two modules that are the farthest apart, roughly: the farthest from the first, and the farthest from that.
@@ -95,12 +98,11 @@ void findPoorScale(ShortfallSearch& search, const BodyPrecision& precision) {
     shortfall.modules = {search.id(a), search.id(b)};
     shortfall.figure = precision.scale * 100;
     shortfall.unit = "%";
-    shortfall.text = fmt::format(
+    shortfall.text = Sentence::saying(
         "{}, so that the size of the body is known to {:.1f} % only: measure the distance between the LEDs of modules "
         "{} and {}, here {:.1f} ± {:.1f} mm, or add modules that are linked port to port",
-        linked ? "few links tell how large the body is"
-               : "no link joins placed modules, their LEDs' offsets alone "
-                 "tell how large the body is",
+        linked ? Sentence::saying("few links tell how large the body is")
+               : Sentence::saying("no link joins placed modules, their LEDs' offsets alone tell how large the body is"),
         precision.scale * 100, search.id(a).value, search.id(b).value, distance * 1e3,
         distance * precision.scale * 1e3);
     search.found.push_back(std::move(shortfall));
@@ -151,15 +153,16 @@ std::vector<Shortfall> findShortfalls(const BodySolution& solution, const Shortf
         if (computed)
             precision = std::move(*computed);
         else
-            search.found.push_back({Shortfall::Kind::Undetermined,
-                                    {},
-                                    {},
-                                    {},
-                                    {},
-                                    {},
-                                    {},
-                                    "the measurements do not fix where everything is, so that nothing can be said of "
-                                    "how exact the result is: add gravity poses and views"});
+            search.found.push_back(
+                {Shortfall::Kind::Undetermined,
+                 {},
+                 {},
+                 {},
+                 {},
+                 {},
+                 {},
+                 Sentence::saying("the measurements do not fix where everything is, so that nothing can be said of "
+                                  "how exact the result is: add gravity poses and views")});
     }
     findDarkModules(search, precision);
     if (precision)

@@ -33,7 +33,7 @@ struct Shortfall {
     std::optional<Vector3d> up_r{};
     std::optional<double> figure{};  ///< how bad it is, in `unit`; the sentence says of what
     std::string unit{};              ///< "deg", "mm", "%"; empty where there is no figure
-    std::string text{};              ///< plain English: what is missing and what to do
+    Sentence text{};                 ///< what is missing and what to do
 };
 
 /// "poses-alike" and the like, in files.

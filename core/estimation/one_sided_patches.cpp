@@ -1,7 +1,5 @@
 #include "core/estimation/one_sided_patches.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -22,14 +20,20 @@ double largestAngle(const std::vector<Vector3d>& directions) {
     return angle;
 }
 
-std::string sentence(const OneSidedPatches& found) {
-    const bool one = found.patches.size() == 1;
-    const std::string how = found.widestAngle > 0 ? fmt::format("from one direction only (views at most {:.0f}° apart)",
-                                                                found.widestAngle / kDegree)
-                                                  : "in one view only";
-    return fmt::format(
-        "{} {} seen {}, so that {} distance from the camera rests on {} own size: add a view from 30° and more aside",
-        listed(found.patches), one ? "is" : "are", how, one ? "its" : "their", one ? "its" : "their");
+Sentence sentenceOf(const OneSidedPatches& found) {
+    const Sentence how =
+        found.widestAngle > 0
+            ? Sentence::saying("from one direction only (views at most {:.0f}° apart)", found.widestAngle / kDegree)
+            : Sentence::saying("in one view only");
+    return found.patches.size() == 1
+               ? Sentence::saying(
+                     "{} is seen {}, so that its distance from the camera rests on its own size: add a view "
+                     "from 30° and more aside",
+                     listed(found.patches), how)
+               : Sentence::saying(
+                     "{} are seen {}, so that their distance from the camera rests on their own size: add a "
+                     "view from 30° and more aside",
+                     listed(found.patches), how);
 }
 
 }  // namespace
@@ -59,7 +63,7 @@ OneSidedPatches oneSidedPatches(const SkinLayout& layout, const std::vector<Pixe
         found.patches.push_back(patch.id);
     }
     if (!found.patches.empty())
-        found.text = sentence(found);
+        found.text = sentenceOf(found);
     return found;
 }
 

@@ -11,7 +11,7 @@ namespace skincal {
 struct OneSidedPatches {
     std::vector<PatchId> patches;
     double widestAngle = 0;  ///< rad, between two views of one of them; 0 where each is in one view only
-    std::string text;        ///< plain English: what that means and what to do; empty where there are none
+    Sentence text;           ///< what that means and what to do; empty where there are none
 };
 
 /// The directions from a patch's origin to the cameras that show it, three of its LEDs at least, differ by less than

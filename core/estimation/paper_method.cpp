@@ -82,14 +82,14 @@ tl::expected<BodyModel, CalibrationError> calibratePaper(const Measurements& mea
         const PatchSighting& sighting = sightings[i];
         if (context.isCancelled())
             return tl::unexpected(CalibrationError{ErrorCode::Cancelled, {}});
-        context.report("patch poses", static_cast<double>(i) / static_cast<double>(sightings.size()));
+        context.report(Sentence::saying("patch poses"), static_cast<double>(i) / static_cast<double>(sightings.size()));
         const auto pose = estimatePatchPosePaper(sighting.leds, measurements.camera, options.pose);
         for (std::size_t k = 0; k < sighting.observations.size(); ++k) {
             if (!pose || !pose->inliers[k]) {
                 estimate.rejected[sighting.observations[k]] = true;
                 estimate.rejectedReason[sighting.observations[k]] =
-                    pose ? "outlier of the patch's pose"
-                         : "no pose of its patch in this view: " + pose.error().message();
+                    pose ? Sentence::saying("outlier of the patch's pose")
+                         : Sentence::saying("no pose of its patch in this view: {}", pose.error().sentence());
             }
         }
         if (!pose && pose.error().code != ErrorCode::TooFewPoints)
@@ -110,11 +110,11 @@ tl::expected<BodyModel, CalibrationError> calibratePaper(const Measurements& mea
     for (std::size_t k = 0; k < layout.patches.size(); ++k) {
         const Patch& patch = layout.patches[k];
         if (!estimate.T_r_o[k]) {
-            estimate.patchStatus[k] = "not seen with a placed patch";
+            estimate.patchStatus[k] = Sentence::saying("not seen with a placed patch");
             estimate.missing.push_back(whyNotPlaced(skin, patch, evidence[k], options.pose.minInliers, !posed.empty()));
             continue;
         }
-        estimate.patchStatus[k] = "placed";
+        estimate.patchStatus[k] = Sentence::saying("placed");
         for (std::size_t i = 0; i < patch.modules.size(); ++i) {
             if (!estimate.shapes[k].T_o_u[i])
                 notHeld.push_back(patch.modules[i]);
@@ -125,7 +125,8 @@ tl::expected<BodyModel, CalibrationError> calibratePaper(const Measurements& mea
     if (!notHeld.empty())
         estimate.missing.push_back(whyNotHeld(skin, notHeld));
     for (const auto& T : estimate.T_r_v)
-        estimate.viewStatus.emplace_back(T ? "placed" : "shows no placed patch well enough");
+        estimate.viewStatus.emplace_back(T ? Sentence::saying("placed")
+                                           : Sentence::saying("shows no placed patch well enough"));
     return assembleBody(measurements, gravity, layout, input, estimate);
 }
 

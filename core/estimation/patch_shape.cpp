@@ -176,7 +176,7 @@ tl::expected<PatchShapesResult, CalibrationError> estimatePatchShapes(const Skin
     for (const Patch& patch : layout.patches)
         startShape(skin, layout, gravity, patch, start, result.assumedFlat);
 
-    context.report("reconstructing patches", 0);
+    context.report(Sentence::saying("reconstructing patches"), 0);
     auto state = solvePatches(layout, input, start, options, context);
     if (!state)
         return tl::unexpected(state.error());
@@ -184,7 +184,7 @@ tl::expected<PatchShapesResult, CalibrationError> estimatePatchShapes(const Skin
     // Once more with the noise that the residuals show, where it is not what was assumed.
     if (sigma > 0 && (sigma > 1.3 * options.accelerometerSigma || sigma < options.accelerometerSigma / 1.3)) {
         options.accelerometerSigma = std::clamp(sigma, 1e-3, 2.0);
-        context.report("reconstructing patches", 0.5);
+        context.report(Sentence::saying("reconstructing patches"), 0.5);
         state = solvePatches(layout, input, *state, options, context);
         if (!state)
             return tl::unexpected(state.error());

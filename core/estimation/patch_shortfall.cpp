@@ -1,7 +1,5 @@
 #include "core/estimation/patch_shortfall.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 
@@ -77,7 +75,7 @@ void findUnplacedPatches(ShortfallSearch& search) {
         shortfall.text = whyNotPlaced(search.skin(), search.patch(k), evidence, search.options.ledsOfAPose, any);
         const auto neighbours = placedNeighbours(search, k);
         if ((reason == NotPlaced::Unseen || reason == NotPlaced::NeverWithPlaced) && !neighbours.empty())
-            shortfall.text += fmt::format(" (it is wired to {})", listed(neighbours));
+            shortfall.text = Sentence::saying("{} (it is wired to {})", shortfall.text, listed(neighbours));
         search.found.push_back(std::move(shortfall));
     }
 }
@@ -99,22 +97,30 @@ std::vector<PatchId> patchesInViews(const ShortfallSearch& search, const std::ve
 }  // namespace
 
 void findUndecidedViews(ShortfallSearch& search) {
-    const auto report = [&](const std::vector<std::size_t>& views, const char* text) {
+    const auto report = [&](const std::vector<std::size_t>& views, bool areUsed) {
         if (views.empty())
             return;
         Shortfall shortfall{Shortfall::Kind::UndecidedViews};
         for (const std::size_t v : views)
             shortfall.views.push_back(search.viewName(v));
         shortfall.patches = patchesInViews(search, views);
-        const std::string shown = listed(shortfall.patches);
-        shortfall.text = fmt::format(
-            "{} could be in two places{}: what is flat looks alike from two sides. Add a view that shows {} tilted by "
-            "40° and more{}",
-            listedViews(shortfall.views), text, shown,
-            shortfall.patches.size() == 1 ? ", or together with another patch" : "");
+        const Sentence which =
+            areUsed
+                ? Sentence::saying("{} could be in two places, the likelier was taken", listedViews(shortfall.views))
+                : Sentence::saying("{} could be in two places and do not count", listedViews(shortfall.views));
+        shortfall.text =
+            shortfall.patches.size() == 1
+                ? Sentence::saying(
+                      "{}: what is flat looks alike from two sides. Add a view that shows {} tilted by 40° and "
+                      "more, or together with another patch",
+                      which, listed(shortfall.patches))
+                : Sentence::saying(
+                      "{}: what is flat looks alike from two sides. Add a view that shows {} tilted by 40° and "
+                      "more",
+                      which, listed(shortfall.patches));
         search.found.push_back(std::move(shortfall));
     };
-    report(search.solution.estimate.undecidedViews, ", the likelier was taken");
+    report(search.solution.estimate.undecidedViews, true);
     // Enough of placed patches in the picture, and yet no place for the camera.
     std::vector<int> leds(search.solution.solved.T_r_v.size(), 0);
     for (const PixelObservation& o : search.solution.input.pixels)
@@ -124,7 +130,7 @@ void findUndecidedViews(ShortfallSearch& search) {
         if (!search.solution.solved.T_r_v[v] && leds[v] >= search.options.ledsOfAPose)
             unplaced.push_back(v);
     }
-    report(unplaced, " and do not count");
+    report(unplaced, false);
 }
 
 }  // namespace skincal

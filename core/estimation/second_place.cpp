@@ -1,7 +1,5 @@
 #include "core/estimation/second_place.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -164,13 +162,13 @@ bool setSecondPlaceAside(BodySolution& solution, std::size_t view) {
     Finding finding;
     finding.kind = Finding::Kind::BumpedView;
     finding.view = name;
-    finding.text = fmt::format(
+    finding.text = Sentence::saying(
         "view {}: the camera was moved half-way, by {:.1f} mm and {:.2f}°: what it saw from the second place does not "
         "count",
         name, T.translation().norm() * 1e3, rotationAngle(T.linear()) / kDegree);
     for (const std::size_t i : second->members) {
         finding.modules.push_back(solution.input.skin->modules[solution.input.pixels[seen.pixels[i]].module].id);
-        estimate.setAside[seen.pixels[i]] = "seen from where the camera stood after it was moved";
+        estimate.setAside[seen.pixels[i]] = Sentence::saying("seen from where the camera stood after it was moved");
     }
     estimate.findings.push_back(std::move(finding));
     solution.solved.T_r_v[view] = first->T_r_v;

@@ -7,6 +7,7 @@
 #include "core/adjustment/gravity_table.h"
 #include "core/adjustment/measurements.h"
 #include "core/estimation/edge_rotation.h"
+#include "core/geometry/sentence.h"
 #include "core/skin/cable_detection.h"
 #include "core/skin/patches.h"
 #include "core/skin/skin_graph.h"
@@ -36,7 +37,7 @@ struct SolutionHistory {
     /// Per link of the graph: how far apart its ports came out where it was taken for a neighbour, m.
     std::vector<std::optional<double>> gaps;
     /// Per link of the graph: how everything else contradicts it; empty where nothing does.
-    std::vector<std::string> refuted;
+    std::vector<Sentence> refuted;
     /// Modules whose patches moved against the others since gravity was read: its directions are not theirs.
     std::vector<std::size_t> movedPatchesOf;
 };

@@ -1,7 +1,5 @@
 #include "core/estimation/spot_settlement.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -37,19 +35,19 @@ std::vector<Case> openCases(const BodySolution& solution) {
 }
 
 /// Why nothing of what is known of the body can be said of this LED in this view; empty where it can.
-std::string whyUnknown(const BodySolution& solution, const LedInView& led, const SpotOptions& options) {
+Sentence whyUnknown(const BodySolution& solution, const LedInView& led, const SpotOptions& options) {
     const auto& T_r_v = solution.solved.T_r_v[led.view];
     const auto& T_r_u = solution.solved.T_r_u[led.module];
     const auto& undecided = solution.estimate.undecidedViews;
     if (!T_r_v)
-        return "its view has no pose";
+        return Sentence::saying("its view has no pose");
     if (!T_r_u)
-        return "its module has no pose";
+        return Sentence::saying("its module has no pose");
     if (std::find(undecided.begin(), undecided.end(), led.view) != undecided.end())
-        return "its view could be in two places";
+        return Sentence::saying("its view could be in two places");
     const Vector3d ray = T_r_v->translation() - *T_r_u * solution.input.skin->templateOf(led.module).led;
     if (std::acos(std::clamp(ray.normalized().dot(T_r_u->linear().col(2)), -1.0, 1.0)) > options.maxAngle)
-        return "the body has it turned away";
+        return Sentence::saying("the body has it turned away");
     return {};
 }
 
@@ -87,16 +85,16 @@ double worstSigma(const PixelPrediction& prediction) {
 }
 
 /// Why the fit decides nothing; empty where it does.
-std::string whyOpen(const Fit& fit, const PixelPrediction& prediction, const SpotOptions& options) {
+Sentence whyOpen(const Fit& fit, const PixelPrediction& prediction, const SpotOptions& options) {
     const double sigma = worstSigma(prediction);
     if (!(sigma <= options.maxSigma_px))
-        return fmt::format("the body tells where it must appear to {:.1f} px only", sigma);
+        return Sentence::saying("the body tells where it must appear to {:.1f} px only", sigma);
     if (!(fit.sigmas <= options.fits))
-        return fmt::format("none lies where the body has it, the nearest {:.1f} px or {:.0f} sigma off",
-                           fit.distance_px, fit.sigmas);
+        return Sentence::saying("none lies where the body has it, the nearest {:.1f} px or {:.0f} sigma off",
+                                fit.distance_px, fit.sigmas);
     if (!(fit.next >= options.others))
-        return fmt::format("another lies where the body has it, too: {:.1f} and {:.1f} sigma off", fit.sigmas,
-                           fit.next);
+        return Sentence::saying("another lies where the body has it, too: {:.1f} and {:.1f} sigma off", fit.sigmas,
+                                fit.next);
     return {};
 }
 
@@ -105,9 +103,11 @@ void take(BodySolution& solution, const Case& open, const Fit& fit) {
     BodyEstimate& estimate = solution.estimate;
     estimate.spots.push_back(
         {open.led.view, open.led.module, solution.input.pixels.size(), spot.pixel,
-         fmt::format("{}: this one lies where the body has it, {:.1f} sigma off, the other{} {:.0f}",
-                     open.undetected->reason, fit.sigmas, open.undetected->spots.size() > 2 ? "s at least" : "",
-                     fit.next)});
+         open.undetected->spots.size() > 2
+             ? Sentence::saying("{}: this one lies where the body has it, {:.1f} sigma off, the others at least {:.0f}",
+                                open.undetected->reason, fit.sigmas, fit.next)
+             : Sentence::saying("{}: this one lies where the body has it, {:.1f} sigma off, the other {:.0f}",
+                                open.undetected->reason, fit.sigmas, fit.next)});
     solution.input.pixels.push_back({open.led.view, open.led.module, spot.pixel, spot.sigma_px});
     estimate.rejected.push_back(false);
     estimate.rejectedReason.emplace_back();
@@ -121,14 +121,17 @@ tl::expected<std::size_t, CalibrationError> settleSpots(BodySolution& solution, 
     if (!options.validate())
         throw std::logic_error("SpotOptions out of range");
     std::erase_if(solution.estimate.spots, [](const SpotVerdict& verdict) { return !verdict.pixel; });
-    const auto leaveOpen = [&](const Case& open, const std::string& why) {
-        solution.estimate.spots.push_back(
-            {open.led.view, open.led.module, std::nullopt, {}, fmt::format("{}; {}", open.undetected->reason, why)});
+    const auto leaveOpen = [&](const Case& open, const Sentence& why) {
+        solution.estimate.spots.push_back({open.led.view,
+                                           open.led.module,
+                                           std::nullopt,
+                                           {},
+                                           Sentence::saying("{}; {}", open.undetected->reason, why)});
     };
     std::vector<Case> cases;
     std::vector<LedInView> leds;
     for (const Case& open : openCases(solution)) {
-        const std::string why = whyUnknown(solution, open.led, options);
+        const Sentence why = whyUnknown(solution, open.led, options);
         if (!why.empty()) {
             leaveOpen(open, why);
             continue;
@@ -145,11 +148,11 @@ tl::expected<std::size_t, CalibrationError> settleSpots(BodySolution& solution, 
     std::size_t taken = 0;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         if (!predictions || !(*predictions)[i]) {
-            leaveOpen(cases[i], "the data do not tell where it must appear");
+            leaveOpen(cases[i], Sentence::saying("the data do not tell where it must appear"));
             continue;
         }
         const Fit fit = nearestSpot(solution, cases[i].led, cases[i].undetected->spots, *(*predictions)[i]);
-        const std::string why = whyOpen(fit, *(*predictions)[i], options);
+        const Sentence why = whyOpen(fit, *(*predictions)[i], options);
         if (!why.empty()) {
             leaveOpen(cases[i], why);
             continue;
@@ -168,8 +171,8 @@ void dropRejectedSpots(BodySolution& solution) {
             continue;
         const std::size_t at = *verdict->pixel;
         const auto offset = static_cast<std::ptrdiff_t>(at);
-        verdict->reason = fmt::format("several spots blink its word; the one that was taken did not stand: {}",
-                                      estimate.rejectedReason[at]);
+        verdict->reason = Sentence::saying("several spots blink its word; the one that was taken did not stand: {}",
+                                           estimate.rejectedReason[at]);
         verdict->pixel.reset();
         solution.input.pixels.erase(solution.input.pixels.begin() + offset);
         estimate.rejected.erase(estimate.rejected.begin() + offset);

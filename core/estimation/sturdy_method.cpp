@@ -44,7 +44,7 @@ tl::expected<int, CalibrationError> adjustGradually(BodySolution& solution, cons
     else
         weights.tolerance = std::max(options.adjustment.tolerance, kRoughly);
     for (const double scale_px : scales_px) {
-        context.report("adjusting the body", std::max(0.0, 1 - scale_px));
+        context.report(Sentence::saying("adjusting the body"), std::max(0.0, 1 - scale_px));
         weights.pixelSigmaFloor_px = std::max(floor_px, scale_px);
         const auto took = adjustSolution(solution, solution.input, context);
         if (!took)

@@ -1,7 +1,5 @@
 #include "core/estimation/suspects.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -145,7 +143,7 @@ Finding explainModule(const BodySolution& solution, const AdjustmentInput& used,
     finding.modules = {skin.modules[u].id};
     if (const auto other = otherTemplate(solution, u, led, options.fits)) {
         finding.kind = Finding::Kind::WrongTemplate;
-        finding.text = fmt::format(
+        finding.text = Sentence::saying(
             "module {}: it is no {} but a {}: its neighbours and its LED lie {:.1f} mm (rms) from where the one would "
             "have them, {:.1f} mm from the other",
             id, skin.templateOf(u).name, other->type->name, other->ownRms * 1e3, other->rms * 1e3);
@@ -155,20 +153,20 @@ Finding explainModule(const BodySolution& solution, const AdjustmentInput& used,
     const Isometry3d& T_r_u = *solution.solved.T_r_u[u];
     const auto fit = fitModule(solution, u, skin.templateOf(u), led);
     if (fit && fit->rms < options.fits)
-        finding.text = fmt::format(
+        finding.text = Sentence::saying(
             "module {}: it moved since gravity was read: its neighbours and its LED have it turned by {:.1f}° and "
             "moved "
             "by {:.1f} mm",
             id, rotationAngle(fit->T_r_u.linear() * T_r_u.linear().transpose()) / kDegree,
             (fit->T_r_u.translation() - T_r_u.translation()).norm() * 1e3);
     else if (own.seenElsewhere)
-        finding.text = fmt::format(
+        finding.text = Sentence::saying(
             "module {}: the views see its LED {:.1f} mm from where gravity and links have it: it moved since gravity "
             "was "
             "read, or its links or its type are reported wrongly",
             id, (*own.seenElsewhere - T_r_u * skin.templateOf(u).led).norm() * 1e3);
     else
-        finding.text = fmt::format(
+        finding.text = Sentence::saying(
             "module {}: {} of its {} links disagree with the rest: it moved since gravity was read, or its type is "
             "reported wrongly",
             id, own.doubtful + own.takenOut, own.pairs.size() + own.takenOut);
@@ -184,7 +182,7 @@ void takeOutModule(BodySolution& solution, std::size_t u, Finding finding) {
     });
     for (std::size_t i = 0; i < solution.input.pixels.size(); ++i) {
         if (solution.input.pixels[i].module == u && estimate.setAside[i].empty())
-            estimate.setAside[i] = "its module does not fit the rest";
+            estimate.setAside[i] = Sentence::saying("its module does not fit the rest");
     }
     solution.solved.T_r_u[u].reset();
     estimate.moduleTrouble[u] = finding.text;
@@ -196,20 +194,20 @@ void takeOutLink(BodySolution& solution, std::size_t l, double disagreement, Sol
     const GraphLink& link = solution.layout.graph.links()[l];
     const Skin& skin = *solution.input.skin;
     const double gap = gapOf(solution, link) * 1e3;
-    const std::string reported = inWords(skin, link);
+    const Sentence reported = inWords(skin, link);
     Finding finding;
     finding.kind = Finding::Kind::WrongLink;
     finding.modules = {skin.modules[link.a].id, skin.modules[link.b].id};
     if (const auto meet = portsThatMeet(solution, link, options.portsMeet)) {
-        finding.text = fmt::format("{} is reported wrongly: ports {} and {} meet there, these are {:.1f} mm apart",
-                                   reported, meet->first, meet->second, gap);
+        finding.text = Sentence::saying("{} is reported wrongly: ports {} and {} meet there, these are {:.1f} mm apart",
+                                        reported, meet->first, meet->second, gap);
     } else if (gap > options.farApart * 1e3 && !link.decided) {
-        finding.text = fmt::format("{} is a cable: everything else has its ports {:.1f} mm apart", reported, gap);
+        finding.text = Sentence::saying("{} is a cable: everything else has its ports {:.1f} mm apart", reported, gap);
         history.refuted.resize(solution.layout.verdicts.size());
-        history.refuted[l] = fmt::format("everything else that was measured has its ports {:.1f} mm apart", gap);
+        history.refuted[l] = Sentence::saying("everything else that was measured has its ports {:.1f} mm apart", gap);
     } else {
-        finding.text = fmt::format("{} does not fit: everything else has its ports {:.1f} mm apart, {:.0f} sigma",
-                                   reported, gap, std::sqrt(disagreement));
+        finding.text = Sentence::saying("{} does not fit: everything else has its ports {:.1f} mm apart, {:.0f} sigma",
+                                        reported, gap, std::sqrt(disagreement));
     }
     solution.estimate.linkTrouble[l] = finding.text;
     solution.estimate.findings.push_back(std::move(finding));

@@ -1,7 +1,5 @@
 #include "core/estimation/view_candidates.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +14,7 @@ struct Facet {
     std::vector<std::size_t> modules;
     Vector3d middle = Vector3d::Zero();
     Vector3d normal = Vector3d::UnitZ();
-    std::string name;
+    Sentence name;
 };
 
 Facet facetOf(const AdviceBasis& basis, std::size_t patch, std::vector<std::size_t> modules) {
@@ -28,9 +26,9 @@ Facet facetOf(const AdviceBasis& basis, std::size_t patch, std::vector<std::size
     return facet;
 }
 
-std::string nameOfModule(const BodySolution& solution, std::size_t u) {
-    return fmt::format("module {} of patch {}", solution.measurements->skin.modules[u].id.value,
-                       solution.layout.patches[solution.layout.patchOf[u]].id.value);
+Sentence nameOfModule(const BodySolution& solution, std::size_t u) {
+    return Sentence::saying("module {} of patch {}", solution.measurements->skin.modules[u].id.value,
+                            solution.layout.patches[solution.layout.patchOf[u]].id.value);
 }
 
 /// A patch that faces one way is one facet; else modules gather about those whose normals differ most.
@@ -46,7 +44,7 @@ std::vector<Facet> facetsOf(const BodySolution& solution, const AdviceBasis& bas
     constexpr double kFacesOneWay = 0.6;
     if (whole.normal.norm() > kFacesOneWay) {
         whole.normal.normalize();
-        whole.name = fmt::format("patch {}", solution.layout.patches[k].id.value);
+        whole.name = Sentence::saying("patch {}", solution.layout.patches[k].id.value);
         return {whole};
     }
     const auto normal = [&](std::size_t u) -> Vector3d { return basis.state.T_r_u[u]->linear().col(2); };
@@ -116,8 +114,8 @@ struct Maker {
     std::vector<ViewCandidate> made{};
 
     /// What lies that way of a target, in words: another patch, or else the module at the target's edge.
-    [[nodiscard]] std::string nameOfSide(const Facet& target, const std::vector<std::size_t>& own,
-                                         const Vector3d& side) const {
+    [[nodiscard]] Sentence nameOfSide(const Facet& target, const std::vector<std::size_t>& own,
+                                      const Vector3d& side) const {
         constexpr double kThatWay = 0.8;
         const Facet* nearest = nullptr;
         for (const Facet& facet : facets) {
@@ -132,7 +130,7 @@ struct Maker {
             *std::max_element(target.modules.begin(), target.modules.end(), [&](std::size_t a, std::size_t b) {
                 return basis.state.T_r_u[a]->translation().dot(side) < basis.state.T_r_u[b]->translation().dot(side);
             });
-        return fmt::format("its edge at module {}", solution.measurements->skin.modules[edge].id.value);
+        return Sentence::saying("its edge at module {}", solution.measurements->skin.modules[edge].id.value);
     }
 
     /// From where the picture holds all of it, seen straight.
@@ -152,24 +150,25 @@ struct Maker {
             patches.push_back(solution.layout.patches[k].id);
         const Vector3d x = across(target.normal, wide);
         const Vector3d y = target.normal.cross(x);
-        const auto put = [&](const Vector3d& direction, const std::string& tilted) {
+        const auto put = [&](const Vector3d& direction, const Sentence& tilted) {
             const Vector3d from = target.middle + away * direction;
             made.push_back({lookAt(from, target.middle, wide), patches,
-                            fmt::format("{:.0f} cm in front of {}, {}", away * 100, target.name, tilted)});
+                            Sentence::saying("{:.0f} cm in front of {}, {}", away * 100, target.name, tilted)});
         };
-        put(target.normal, "looking straight at it");
+        put(target.normal, Sentence::saying("looking straight at it"));
         for (const Vector3d& side : {x, Vector3d(-x), y, Vector3d(-y)}) {
             const Vector3d direction = std::cos(options.tilt) * target.normal + std::sin(options.tilt) * side;
-            put(direction, fmt::format("then {:.0f}° around it towards {}", options.tilt / kDegree,
-                                       nameOfSide(target, own, side)));
+            put(direction, Sentence::saying("then {:.0f}° around it towards {}", options.tilt / kDegree,
+                                            nameOfSide(target, own, side)));
         }
     }
 
     void addStraight(const Facet& target) {
         const Vector3d from = target.middle + distance * target.normal;
-        made.push_back({lookAt(from, target.middle, target.normal.unitOrthogonal()),
-                        {solution.layout.patches[target.patch].id},
-                        fmt::format("{:.0f} cm in front of {}, looking straight at it", distance * 100, target.name)});
+        made.push_back(
+            {lookAt(from, target.middle, target.normal.unitOrthogonal()),
+             {solution.layout.patches[target.patch].id},
+             Sentence::saying("{:.0f} cm in front of {}, looking straight at it", distance * 100, target.name)});
     }
 
     /// The facets of other patches that can be looked at together with one, the nearest first.
@@ -212,7 +211,7 @@ struct Maker {
             return;
         Facet both{a.patch, a.modules, 0.5 * (a.middle + b.middle), normal.normalized(), {}};
         both.modules.insert(both.modules.end(), b.modules.begin(), b.modules.end());
-        both.name = fmt::format("the middle between {} and {}", a.name, b.name);
+        both.name = Sentence::saying("the middle between {} and {}", a.name, b.name);
         add(both, {a.patch, b.patch}, b.middle - a.middle);
     }
 };

@@ -11,7 +11,7 @@ namespace skincal {
 struct ViewCandidate {
     Isometry3d T_r_v = Isometry3d::Identity();
     std::vector<PatchId> patches;  ///< one that it looks at, or two between which it looks
-    std::string words;             ///< "60 cm in front of patch 3, then 35° around it towards patch 1"
+    Sentence words;                ///< "60 cm in front of patch 3, then 35° around it towards patch 1"
 };
 
 struct ViewCandidateOptions {

@@ -1,12 +1,10 @@
 #include "core/estimation/wrong_links.h"
 
-#include <fmt/format.h>
-
 namespace skincal {
 
-std::string inWords(const Skin& skin, const GraphLink& link) {
-    return fmt::format("the link from module {} port {} to module {} port {}", skin.modules[link.a].id.value,
-                       link.a_port, skin.modules[link.b].id.value, link.b_port);
+Sentence inWords(const Skin& skin, const GraphLink& link) {
+    return Sentence::saying("the link from module {} port {} to module {} port {}", skin.modules[link.a].id.value,
+                            link.a_port, skin.modules[link.b].id.value, link.b_port);
 }
 
 std::optional<std::pair<std::size_t, std::size_t>> portsThatMeet(const BodySolution& solution, const GraphLink& link,
@@ -51,8 +49,8 @@ void nameMisportedLinks(BodySolution& solution, double limit) {
         Finding finding;
         finding.kind = Finding::Kind::WrongLink;
         finding.modules = {skin.modules[link.a].id, skin.modules[link.b].id};
-        finding.text = fmt::format("{} is reported wrongly: ports {} and {} meet there, these are {:.1f} mm apart",
-                                   inWords(skin, link), meet->first, meet->second, gapOf(solution, link) * 1e3);
+        finding.text = Sentence::saying("{} is reported wrongly: ports {} and {} meet there, these are {:.1f} mm apart",
+                                        inWords(skin, link), meet->first, meet->second, gapOf(solution, link) * 1e3);
         estimate.linkTrouble[l] = finding.text;
         estimate.findings.push_back(std::move(finding));
     }

@@ -9,7 +9,7 @@
 namespace skincal {
 
 /// "the link from module 3 port 1 to module 17 port 0"
-[[nodiscard]] std::string inWords(const Skin& skin, const GraphLink& link);
+[[nodiscard]] Sentence inWords(const Skin& skin, const GraphLink& link);
 
 /// Which ports of a link's modules come out nearest to each other, within `limit` (m).
 [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> portsThatMeet(const BodySolution& solution,

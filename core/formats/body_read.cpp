@@ -73,6 +73,13 @@ std::vector<std::string> readTexts(const JsonCursor& cursor) {
     return texts;
 }
 
+std::vector<Sentence> readSentences(const JsonCursor& cursor) {
+    std::vector<Sentence> sentences;
+    for (std::string& text : readTexts(cursor))
+        sentences.push_back(Sentence::verbatim(std::move(text)));
+    return sentences;
+}
+
 std::map<std::string, std::string> readTextMap(const JsonCursor& cursor, std::string_view key) {
     std::map<std::string, std::string> map;
     if (cursor.holds(key)) {
@@ -117,7 +124,7 @@ BodyModule readModule(const JsonCursor& cursor) {
     module.T_body_module = optionalAt(cursor, "T_body_module", readPose);
     module.covariance = optionalAt(cursor, "covariance", readCovariance);
     module.accelerometer = optionalAt(cursor, "accelerometer", readAccelerometer);
-    module.status = cursor.at("status").text();
+    module.status = Sentence::verbatim(cursor.at("status").text());
     if (cursor.holds("support")) {
         module.seen = readWord<2>(cursor.at("support"), {"pictures", "links and gravity"}) == 0;
         if (!module.T_body_module)
@@ -134,7 +141,7 @@ BodyPatch readPatch(const JsonCursor& cursor) {
         patch.modules.push_back(readId(item));
     patch.T_body_patch = optionalAt(cursor, "T_body_patch", readPose);
     patch.views = readTexts(cursor.at("views"));
-    patch.status = cursor.at("status").text();
+    patch.status = Sentence::verbatim(cursor.at("status").text());
     return patch;
 }
 
@@ -145,7 +152,7 @@ BodyLink readLink(const JsonCursor& cursor) {
     link.link.a_port = static_cast<int>(cursor.at("a_port").integer(0, kMaxPorts));
     link.link.b_port = static_cast<int>(cursor.at("b_port").integer(0, kMaxPorts));
     link.kind = static_cast<LinkKind>(readWord<2>(cursor.at("kind"), {"adjacent", "cable"}));
-    link.reason = textOr(cursor, "reason", "");
+    link.reason = Sentence::verbatim(textOr(cursor, "reason", ""));
     link.distance = optionalAt(cursor, "distance", readNumber);
     return link;
 }
@@ -155,7 +162,7 @@ BodyView readView(const JsonCursor& cursor) {
     view.name = cursor.at("name").text();
     view.T_body_camera = optionalAt(cursor, "T_body_camera", readPose);
     view.residual_rms_px = optionalAt(cursor, "residual_rms_px", readNumber);
-    view.status = textOr(cursor, "status", "");
+    view.status = Sentence::verbatim(textOr(cursor, "status", ""));
     for (const JsonCursor& item : cursor.at("observations").array(kMaxModules)) {
         BodyObservation o;
         o.module = readId(item.at("module"));
@@ -163,7 +170,7 @@ BodyView readView(const JsonCursor& cursor) {
         o.residual = optionalAt(item, "residual", readVector2);
         o.verdict = static_cast<ObservationVerdict>(
             readWord<4>(item.at("verdict"), {"used", "rejected", "not found", "ambiguous"}));
-        o.reason = textOr(item, "reason", "");
+        o.reason = Sentence::verbatim(textOr(item, "reason", ""));
         view.observations.push_back(std::move(o));
     }
     return view;
@@ -186,7 +193,7 @@ Finding readFinding(const JsonCursor& cursor) {
     finding.view = optionalAt(cursor, "view", [](const JsonCursor& c) { return c.text(); });
     finding.pose =
         optionalAt(cursor, "pose", [](const JsonCursor& c) { return static_cast<int>(c.integer(0, kMaxPose)); });
-    finding.text = cursor.at("text").text();
+    finding.text = Sentence::verbatim(cursor.at("text").text());
     return finding;
 }
 
@@ -201,9 +208,9 @@ BodyQuality readQuality(const JsonCursor& cursor) {
             q.condition[name] = value.json().is_null() ? std::numeric_limits<double>::infinity() : value.number();
     }
     if (cursor.holds("warnings"))
-        q.warnings = readTexts(cursor.at("warnings"));
+        q.warnings = readSentences(cursor.at("warnings"));
     if (cursor.holds("missing"))
-        q.missing = readTexts(cursor.at("missing"));
+        q.missing = readSentences(cursor.at("missing"));
     if (cursor.holds("findings")) {
         for (const JsonCursor& item : cursor.at("findings").array(kMaxTexts))
             q.findings.push_back(readFinding(item));

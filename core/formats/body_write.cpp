@@ -61,7 +61,7 @@ Json toJson(const BodyModule& module) {
         if (!module.accelerometer->misalignment.isZero(0))
             json["accelerometer"]["misalignment"] = numbers(module.accelerometer->misalignment);
     }
-    json["status"] = module.status;
+    json["status"] = module.status.english();
     json["support"] = nullptr;
     if (module.T_body_module)
         json["support"] = module.seen ? "pictures" : "links and gravity";
@@ -75,7 +75,7 @@ Json toJson(const BodyPatch& patch) {
     json["modules"] = idsOf(patch.modules);
     json["T_body_patch"] = toJson(patch.T_body_patch);
     json["views"] = patch.views;
-    json["status"] = patch.status;
+    json["status"] = patch.status.english();
     return json;
 }
 
@@ -86,7 +86,7 @@ Json toJson(const BodyLink& link) {
     json["b"] = link.link.b.value;
     json["b_port"] = link.link.b_port;
     json["kind"] = link.kind == LinkKind::Adjacent ? "adjacent" : "cable";
-    json["reason"] = link.reason;
+    json["reason"] = link.reason.english();
     json["distance"] = orNull(link.distance);
     return json;
 }
@@ -98,7 +98,7 @@ Json toJson(const BodyObservation& o) {
     json["pixel"] = o.pixel ? numbers(*o.pixel) : Json();
     json["residual"] = o.residual ? numbers(*o.residual) : Json();
     json["verdict"] = kVerdicts.at(static_cast<std::size_t>(o.verdict));
-    json["reason"] = o.reason;
+    json["reason"] = o.reason.english();
     return json;
 }
 
@@ -107,7 +107,7 @@ Json toJson(const BodyView& view) {
     json["name"] = view.name;
     json["T_body_camera"] = toJson(view.T_body_camera);
     json["residual_rms_px"] = orNull(view.residual_rms_px);
-    json["status"] = view.status;
+    json["status"] = view.status.english();
     json["observations"] = Json::array();
     for (const BodyObservation& o : view.observations)
         json["observations"].push_back(toJson(o));
@@ -120,7 +120,7 @@ Json toJson(const Finding& finding) {
     json["modules"] = idsOf(finding.modules);
     json["view"] = orNull(finding.view);
     json["pose"] = orNull(finding.pose);
-    json["text"] = finding.text;
+    json["text"] = finding.text.english();
     return json;
 }
 
@@ -143,8 +143,8 @@ Json toJson(const BodyQuality& q) {
     json["condition"] = Json::object();
     for (const auto& [key, value] : q.condition)
         json["condition"][key] = value;
-    json["warnings"] = q.warnings;
-    json["missing"] = q.missing;
+    json["warnings"] = english(q.warnings);
+    json["missing"] = english(q.missing);
     json["findings"] = arrayOf(q.findings);
     json["verdict"] = name(q.trust);
     return json;

@@ -10,7 +10,7 @@ std::string exportCsv(const BodyModel& body) {
     std::string csv = "id,type,patch,status,x,y,z,qx,qy,qz,qw\n";
     for (const BodyModule& module : body.modules) {
         // A comma or a quote inside a text would shift the columns.
-        std::string status = module.status;
+        std::string status = module.status.english();
         std::string type = module.type;
         for (std::string* text : {&status, &type})
             std::replace_if(

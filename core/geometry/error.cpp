@@ -6,44 +6,57 @@
 
 namespace skincal {
 
-std::string_view name(ErrorCode code) {
+Sentence sentenceOf(ErrorCode code) {
     switch (code) {
         case ErrorCode::TooFewPoses:
-            return "too few gravity poses";
+            return Sentence::saying("too few gravity poses");
         case ErrorCode::ParallelGravity:
-            return "gravity has the same direction in all poses";
+            return Sentence::saying("gravity has the same direction in all poses");
         case ErrorCode::TooFewPoints:
-            return "too few points";
+            return Sentence::saying("too few points");
         case ErrorCode::DegeneratePoints:
-            return "the measurements leave a pose undetermined, as points on a line do";
+            return Sentence::saying("the measurements leave a pose undetermined, as points on a line do");
         case ErrorCode::NoConsensus:
-            return "no pose explains enough of the points";
+            return Sentence::saying("no pose explains enough of the points");
         case ErrorCode::SizeMismatch:
-            return "paired inputs differ in length";
+            return Sentence::saying("paired inputs differ in length");
         case ErrorCode::NotFinite:
-            return "a measurement is not a finite number";
+            return Sentence::saying("a measurement is not a finite number");
         case ErrorCode::NotConverged:
-            return "the solver did not converge";
+            return Sentence::saying("the solver did not converge");
         case ErrorCode::InvalidOptions:
-            return "an option is outside its range";
+            return Sentence::saying("an option is outside its range");
         case ErrorCode::Cancelled:
-            return "cancelled";
+            return Sentence::saying("cancelled");
         case ErrorCode::NothingPlaced:
-            return "no module could be placed on the body";
+            return Sentence::saying("no module could be placed on the body");
         case ErrorCode::NoDisplay:
-            return "no display to draw with";
+            return Sentence::saying("no display to draw with");
     }
     throw std::logic_error("unknown ErrorCode");
 }
 
-std::string CalibrationError::message() const {
-    std::string text{name(code)};
-    std::string separator = " (";
-    for (const auto& [key, number] : numbers) {
-        text += fmt::format("{}{} {:g}", separator, key, number);
-        separator = ", ";
-    }
-    return numbers.empty() ? text : text + ")";
+namespace {
+
+Sentence inWords(const std::string& what, double number) {
+    if (what == "found")
+        return Sentence::saying("found {:g}", number);
+    if (what == "needed")
+        return Sentence::saying("needed {:g}", number);
+    if (what == "inliers")
+        return Sentence::saying("inliers {:g}", number);
+    if (what == "iterations")
+        return Sentence::saying("iterations {:g}", number);
+    return Sentence::verbatim(fmt::format("{} {:g}", what, number));
+}
+
+}  // namespace
+
+Sentence CalibrationError::sentence() const {
+    Sentence figures;
+    for (const auto& [what, number] : numbers)
+        figures = figures.empty() ? inWords(what, number) : Sentence::saying("{}, {}", figures, inWords(what, number));
+    return figures.empty() ? sentenceOf(code) : Sentence::saying("{} ({})", sentenceOf(code), figures);
 }
 
 }  // namespace skincal

@@ -2,7 +2,8 @@
 
 #include <map>
 #include <string>
-#include <string_view>
+
+#include "core/geometry/sentence.h"
 
 namespace skincal {
 
@@ -22,15 +23,17 @@ enum class ErrorCode {
     NoDisplay,         ///< nothing to draw with
 };
 
-[[nodiscard]] std::string_view name(ErrorCode code);
+[[nodiscard]] Sentence sentenceOf(ErrorCode code);
 
-/// A code and the numbers that belong to it ("needed" 6, "found" 4). The user interface makes the sentence.
+/// A code and the numbers that belong to it ("needed" 6, "found" 4).
 struct CalibrationError {
     ErrorCode code{};
     std::map<std::string, double> numbers{};
 
-    /// Plain English for logs and the command line, e.g. "too few points (found 4, needed 6)".
-    [[nodiscard]] std::string message() const;
+    /// "too few points (found 4, needed 6)"
+    [[nodiscard]] Sentence sentence() const;
+    /// The same in English, for logs and the command line.
+    [[nodiscard]] std::string message() const { return sentence().english(); }
 };
 
 }  // namespace skincal

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <functional>
-#include <string_view>
+
+#include "core/geometry/sentence.h"
 
 namespace skincal {
 
@@ -13,7 +14,7 @@ struct RunContext {
     /// second).
     std::function<bool()> isCancelled = [] { return false; };
     /// Stage in plain words and the share of it that is done, 0 to 1.
-    std::function<void(std::string_view stage, double done)> report = [](std::string_view, double) {};
+    std::function<void(const Sentence& stage, double done)> report = [](const Sentence&, double) {};
 };
 
 }  // namespace skincal

@@ -200,14 +200,14 @@ tl::expected<MeshComparison, CalibrationError> compareWithMesh(std::span<const P
     const std::vector<OrientedPoint> fine = thinned(all, kFineModules);
     const std::vector<OrientedPoint> coarse = thinned(all, kCoarseModules);
     Random random(options.seed, "mesh");
-    context.report("placing on the mesh", 0);
+    context.report(Sentence::saying("placing on the mesh"), 0);
     const MeshSurface surface(mesh, context);
     if (context.isCancelled())
         return failed(ErrorCode::Cancelled);
     const auto starts = alignmentStarts(coarse, mesh, kStarts, random, context);
     if (context.isCancelled())
         return failed(ErrorCode::Cancelled);
-    context.report("placing on the mesh", 0.3);
+    context.report(Sentence::saying("placing on the mesh"), 0.3);
 
     MeshAlignmentOptions align;
     align.fitOffset = options.fitOffset;
@@ -219,7 +219,7 @@ tl::expected<MeshComparison, CalibrationError> compareWithMesh(std::span<const P
     refine(candidates, coarse, surface, align, context);
     if (context.isCancelled())
         return failed(ErrorCode::Cancelled);
-    context.report("placing on the mesh", 0.7);
+    context.report(Sentence::saying("placing on the mesh"), 0.7);
     if (candidates.size() > kFinalists)
         candidates.resize(kFinalists);
     align.reach = std::max(0.01, 0.05 * extentOf(all));

@@ -84,7 +84,7 @@ void SimulatedCamera::start() {
     if (running_)
         return;
     if (!rig_ || !rig_->isCameraPlugged()) {
-        soon([this] { emit failed(QStringLiteral("no camera is plugged in")); });
+        soon([this] { emit failed(tr("no camera is plugged in")); });
         return;
     }
     running_ = true;
@@ -114,7 +114,7 @@ void SimulatedCamera::unplugged() {
     soon([this] {
         // The first may destroy this.
         const QPointer<SimulatedCamera> self(this);
-        emit failed(QStringLiteral("the camera was unplugged"));
+        emit failed(tr("the camera was unplugged"));
         if (self)
             emit stopped();
     });

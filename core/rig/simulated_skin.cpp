@@ -81,7 +81,7 @@ void SimulatedSkin::open() {
     if (state_ != State::Closed)
         return;
     if (!rig_) {
-        soon([this] { emit failed(QStringLiteral("no skin is plugged in")); });
+        soon([this] { emit failed(tr("no skin is plugged in")); });
         return;
     }
     state_ = State::Opening;
@@ -92,7 +92,7 @@ void SimulatedSkin::open() {
             emit opened();
         } else {
             state_ = State::Closed;
-            emit failed(QStringLiteral("no skin is plugged in"));
+            emit failed(tr("no skin is plugged in"));
         }
     });
 }
@@ -121,7 +121,7 @@ void SimulatedSkin::unplugged() {
     soon([this] {
         // The first may destroy this.
         const QPointer<SimulatedSkin> self(this);
-        emit failed(QStringLiteral("the skin was unplugged"));
+        emit failed(tr("the skin was unplugged"));
         if (self)
             emit closed();
     });
@@ -129,7 +129,7 @@ void SimulatedSkin::unplugged() {
 
 void SimulatedSkin::explore() {
     if (!isOpen()) {
-        soon([this] { emit failed(QStringLiteral("the skin is not open")); });
+        soon([this] { emit failed(tr("the skin is not open")); });
         return;
     }
     ++exploration_;

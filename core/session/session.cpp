@@ -68,7 +68,7 @@ Session::Session(QObject* parent) : QObject(parent), undoStack_(this), solver_(t
         solution_ = std::move(solution);
         emit solutionChanged();
     });
-    connect(&solver_, &Solver::failed, this, [this](const QString& why, std::uint64_t revision) {
+    connect(&solver_, &Solver::failed, this, [this](const Sentence& why, std::uint64_t revision) {
         if (revision != revision_)
             return;  // nobody can tell yet what the newest data give
         failure_ = why;
@@ -295,7 +295,7 @@ void Session::solveSoon() {
     isSolveDue_ = false;
     if (measured_.skin.modules.empty() || posesOf(measured_, decisions_).empty()) {
         // A body of what was taken away would be made up.
-        if (solution_ || !failure_.isEmpty() || isSolving())
+        if (solution_ || !failure_.empty() || isSolving())
             forgetSolution();
         return;
     }

@@ -37,7 +37,7 @@ class Session : public QObject {
     /// See Solver::setQuick.
     void setQuick(double seconds) { solver_.setQuick(seconds); }
     /// Why the newest data gave no body; empty where they did.
-    [[nodiscard]] const QString& failure() const { return failure_; }
+    [[nodiscard]] const Sentence& failure() const { return failure_; }
 
     [[nodiscard]] const ScannedView* findView(const std::string& name) const;
 
@@ -80,7 +80,7 @@ class Session : public QObject {
     void solutionChanged();
     void guidanceChanged();
     void solvingChanged(bool solving);
-    void solvingProgressed(const QString& stage, double done);
+    void solvingProgressed(const Sentence& stage, double done);
     void modifiedChanged(bool modified);
     void opened(const QString& directory);
     void saved(const QString& directory);
@@ -108,7 +108,7 @@ class Session : public QObject {
     std::shared_ptr<std::atomic<bool>> readingCancelled_;
     std::shared_ptr<const Solution> solution_;
     std::shared_ptr<const Guidance> guidance_;
-    QString failure_;
+    Sentence failure_;
     std::uint64_t revision_ = 0;
     std::uint64_t savedRevision_ = 0;
     bool isSolveDue_ = false;

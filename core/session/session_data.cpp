@@ -33,12 +33,13 @@ std::vector<GravityReading> countingReadings(const Measured& measured, const Dec
 
 /// A rejected detection counts as not found, and so do several spots of which none was sure.
 ViewDetections withoutRejected(ViewDetections view, const Decisions& decisions) {
-    const auto whyRejected = [&](ModuleId module) -> std::optional<std::string> {
+    const auto whyRejected = [&](ModuleId module) -> std::optional<Sentence> {
         const auto decision = decisions.detections.find({view.name, module});
         if (decision == decisions.detections.end() || decision->second.verdict != "rejected")
             return std::nullopt;
         const std::string& why = decision->second.reason;
-        return "rejected by the operator" + (why.empty() ? "" : ": " + why);
+        return why.empty() ? Sentence::saying("rejected by the operator")
+                           : Sentence::saying("rejected by the operator: {}", why);
     };
     for (Undetected& undetected : view.undetected) {
         const auto why = undetected.spots.empty() ? std::nullopt : whyRejected(undetected.module);

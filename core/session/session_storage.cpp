@@ -105,7 +105,8 @@ tl::expected<OpenedRecording, std::string> readSession(const std::filesystem::pa
         modules.push_back(module.id);
     auto& views = opened.measured.views;
     for (std::size_t v = 0; v < views.size(); ++v) {
-        context.report("reading pictures", static_cast<double>(v) / static_cast<double>(views.size()));
+        context.report(Sentence::saying("reading pictures"),
+                       static_cast<double>(v) / static_cast<double>(views.size()));
         if (views[v].frames.empty())
             continue;
         if (const auto decoded = decodePictures(views[v], directory, recording->camera, modules, context); !decoded)

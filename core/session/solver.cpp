@@ -14,16 +14,16 @@ RunContext contextOf(QPointer<Solver> solver, std::shared_ptr<std::atomic<bool>>
     RunContext context;
     context.isCancelled = [cancelled] { return cancelled->load(); };
     auto last = std::make_shared<std::chrono::steady_clock::time_point>();
-    context.report = [solver, last](std::string_view stage, double done) {
+    context.report = [solver, last](const Sentence& stage, double done) {
         const auto now = std::chrono::steady_clock::now();
         if (now - *last < kBetweenReports)
             return;
         *last = now;
         QMetaObject::invokeMethod(
             solver,
-            [solver, text = QString::fromUtf8(stage.data(), static_cast<qsizetype>(stage.size())), done] {
+            [solver, stage, done] {
                 if (solver)
-                    emit solver->progressed(text, done);
+                    emit solver->progressed(stage, done);
             },
             Qt::QueuedConnection);
     };
@@ -72,7 +72,7 @@ void Solver::startNext() {
         const auto deliver = [&](auto function) { QMetaObject::invokeMethod(self, function, Qt::QueuedConnection); };
         auto solution = solve(request.measurements, request.revision, start.get(), context);
         if (!solution && solution.error().code != ErrorCode::Cancelled) {
-            deliver([self, run, why = QString::fromStdString(solution.error().message()), revision = request.revision] {
+            deliver([self, run, why = solution.error().sentence(), revision = request.revision] {
                 if (self && self->run_ == run)
                     emit self->failed(why, revision);
             });

@@ -29,10 +29,10 @@ class Solver : public QObject {
 
   signals:
     void busyChanged(bool busy);
-    void progressed(const QString& stage, double done);
+    void progressed(const Sentence& stage, double done);
     void solved(std::shared_ptr<const skincal::Solution> solution);
     void guided(std::shared_ptr<const skincal::Guidance> guidance);
-    void failed(const QString& why, std::uint64_t revision);
+    void failed(const Sentence& why, std::uint64_t revision);
 
   private:
     struct Request {

@@ -1,7 +1,5 @@
 #include "core/skin/cable_detection.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,7 +10,7 @@ namespace {
 
 constexpr double kPi = 180 * kDegree;
 
-LinkVerdict cable(LinkReason reason, std::string explanation) {
+LinkVerdict cable(LinkReason reason, Sentence explanation) {
     return {LinkKind::Cable, reason, std::move(explanation), std::nullopt, std::nullopt};
 }
 
@@ -24,9 +22,9 @@ LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const CableEvide
     const auto& separation = evidence.separation[l];
     const auto& gap = evidence.gap[l];
     if (link.a == link.b)
-        return cable(LinkReason::SelfLink, "both ends are at the same module");
+        return cable(LinkReason::SelfLink, Sentence::saying("both ends are at the same module"));
     if (link.has(LinkIssue::HostPort))
-        return cable(LinkReason::ComputerPort, "its port is the one that is wired to the computer");
+        return cable(LinkReason::ComputerPort, Sentence::saying("its port is the one that is wired to the computer"));
     LinkVerdict verdict;
     if (R_a_b) {
         const Matrix3d flat = flatNeighbourRotation(skin.port(link.a, link.a_port), skin.port(link.b, link.b_port));
@@ -36,23 +34,23 @@ LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const CableEvide
         if (found.bend > options.maxBend) {
             verdict.kind = LinkKind::Cable;
             verdict.reason = LinkReason::Bend;
-            verdict.explanation = fmt::format("the modules are folded by {:.0f}°, neighbours by {:.0f}° at most",
-                                              found.bend / kDegree, options.maxBend / kDegree);
+            verdict.explanation = Sentence::saying("the modules are folded by {:.0f}°, neighbours by {:.0f}° at most",
+                                                   found.bend / kDegree, options.maxBend / kDegree);
             return verdict;
         }
         if (found.twist > options.maxTwist) {
             verdict.kind = LinkKind::Cable;
             verdict.reason = LinkReason::Twist;
-            verdict.explanation =
-                fmt::format("the modules are turned by {:.0f}° in the plane of the skin, neighbours by {:.0f}° at most",
-                            found.twist / kDegree, options.maxTwist / kDegree);
+            verdict.explanation = Sentence::saying(
+                "the modules are turned by {:.0f}° in the plane of the skin, neighbours by {:.0f}° at most",
+                found.twist / kDegree, options.maxTwist / kDegree);
             return verdict;
         }
     }
     if (R_a_b && rotationResidual && *rotationResidual > options.maxRotationResidual) {
         verdict.kind = LinkKind::Cable;
         verdict.reason = LinkReason::Movement;
-        verdict.explanation = fmt::format(
+        verdict.explanation = Sentence::saying(
             "the modules turned against each other between the poses: their readings differ by {:.1f} m/s², those of "
             "neighbours by {:.1f} at most",
             *rotationResidual, options.maxRotationResidual);
@@ -67,22 +65,23 @@ LinkVerdict judgeAlone(const Skin& skin, const GraphLink& link, const CableEvide
     if (gap && *gap > options.maxGap) {
         verdict.kind = LinkKind::Cable;
         verdict.reason = LinkReason::Gap;
-        verdict.explanation = fmt::format("taken for neighbours, their ports came out {:.1f} mm apart, {:.1f} at most",
-                                          *gap * 1e3, options.maxGap * 1e3);
+        verdict.explanation =
+            Sentence::saying("taken for neighbours, their ports came out {:.1f} mm apart, {:.1f} at most", *gap * 1e3,
+                             options.maxGap * 1e3);
         return verdict;
     }
     // Where the two ports did meet, they did not by chance.
     if (!gap && separation && *separation > options.maxSeparation) {
         verdict.kind = LinkKind::Cable;
         verdict.reason = LinkReason::Separation;
-        verdict.explanation =
-            fmt::format("in the pictures the LEDs are {:.1f} times as far apart as those of neighbours, {:.1f} at most",
-                        *separation, options.maxSeparation);
+        verdict.explanation = Sentence::saying(
+            "in the pictures the LEDs are {:.1f} times as far apart as those of neighbours, {:.1f} at most",
+            *separation, options.maxSeparation);
         return verdict;
     }
-    verdict.explanation = verdict.bend ? fmt::format("bend {:.1f}°, twist {:.1f}°: as neighbours have",
-                                                     *verdict.bend / kDegree, *verdict.twist / kDegree)
-                                       : "nothing measured contradicts neighbours";
+    verdict.explanation = verdict.bend ? Sentence::saying("bend {:.1f}°, twist {:.1f}°: as neighbours have",
+                                                          *verdict.bend / kDegree, *verdict.twist / kDegree)
+                                       : Sentence::saying("nothing measured contradicts neighbours");
     return verdict;
 }
 
@@ -126,10 +125,11 @@ void settleContradictions(const SkinGraph& graph, std::vector<LinkVerdict>& verd
         verdicts[l].reason = LinkReason::Contradictory;
         verdicts[l].explanation =
             outcome[l] == Contest::LostToOperator
-                ? "another link claims the same port, and the operator called that one a neighbour"
+                ? Sentence::saying("another link claims the same port, and the operator called that one a neighbour")
             : outcome[l] == Contest::LostToRotation
-                ? "another link claims the same port, and its measured rotation fits neighbours"
-                : "several links claim the same port and nothing tells which of them is real: none is believed";
+                ? Sentence::saying("another link claims the same port, and its measured rotation fits neighbours")
+                : Sentence::saying(
+                      "several links claim the same port and nothing tells which of them is real: none is believed");
     }
 }
 
@@ -172,7 +172,7 @@ std::vector<LinkVerdict> detectCables(const Skin& skin, const SkinGraph& graph, 
         if (links[l].decided && links[l].a != links[l].b) {
             verdict.kind = *links[l].decided;
             verdict.reason = LinkReason::OperatorsWord;
-            verdict.explanation = "the operator said so";
+            verdict.explanation = Sentence::saying("the operator said so");
         }
         verdicts.push_back(std::move(verdict));
     }

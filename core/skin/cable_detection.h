@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/se3.h"
+#include "core/geometry/sentence.h"
 #include "core/skin/skin_graph.h"
 
 namespace skincal {
@@ -27,7 +28,7 @@ enum class LinkReason {
 struct LinkVerdict {
     LinkKind kind = LinkKind::Adjacent;
     LinkReason reason = LinkReason::Neighbours;
-    std::string explanation;      ///< in plain English, with the number that decided
+    Sentence explanation;         ///< with the number that decided
     std::optional<double> bend;   ///< rad, see bendAndTwist
     std::optional<double> twist;  ///< rad
 };
@@ -44,7 +45,7 @@ struct CableEvidence {
     std::vector<std::optional<double>> rotationResidual;
     std::vector<std::optional<double>> separation;  ///< distance in the pictures, times that of neighbours
     std::vector<std::optional<double>> gap;         ///< between the two ports in an earlier solution, m
-    std::vector<std::string> refuted;               ///< how a solution without it contradicts it; empty where none does
+    std::vector<Sentence> refuted;                  ///< how a solution without it contradicts it; empty where none does
 };
 
 struct CableOptions {

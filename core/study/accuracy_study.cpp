@@ -188,7 +188,7 @@ AccuracyStudy runAccuracyStudy(const AccuracyStudyOptions& options, const RunCon
     part.isCancelled = context.isCancelled;
     for (int i = 0; i < options.worlds; ++i) {
         const std::uint64_t seed = options.firstSeed + static_cast<std::uint64_t>(i);
-        context.report(fmt::format("world {}", seed), static_cast<double>(i) / options.worlds);
+        context.report(Sentence::saying("world {}", seed), static_cast<double>(i) / options.worlds);
         const World world = randomWorld(seed);
         auto accuracy = assessAccuracy(measurementsOf(world), knownTruth(world), seed, part);
         if (!accuracy || context.isCancelled()) {

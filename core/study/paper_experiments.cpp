@@ -409,7 +409,8 @@ PaperStudy runPaperStudy(const PaperStudyOptions& options, const RunContext& con
     std::erase_if(experiments, [&](const Experiment& experiment) { return isLeftOut(experiment.name); });
     PaperStudy study{options, {}, false};
     for (std::size_t i = 0; i < experiments.size(); ++i) {
-        context.report(experiments[i].name, static_cast<double>(i) / static_cast<double>(experiments.size()));
+        context.report(Sentence::verbatim(std::string(experiments[i].name)),
+                       static_cast<double>(i) / static_cast<double>(experiments.size()));
         study.rows.push_back(run(experiments[i], options, context));
         if (context.isCancelled()) {
             study.cancelled = true;

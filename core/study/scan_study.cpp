@@ -384,7 +384,7 @@ ScanStudy runScanStudy(const ScanStudyOptions& options, const RunContext& contex
     for (const ScanCase& what : options.cases) {
         ScanStudyRow row{what, {}};
         for (int i = 0; i < options.seeds; ++i) {
-            context.report("scanning", done++ / all);
+            context.report(Sentence::saying("scanning"), done++ / all);
             row.score.add(scoreScan(what, options.firstSeed + static_cast<std::uint64_t>(i), silent));
             if (context.isCancelled()) {
                 study.cancelled = true;

@@ -1,7 +1,5 @@
 #include "core/vision/decoder.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -32,16 +30,17 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
                                             [](const Sighting& a, const Sighting& b) { return a.module < b.module; });
         if (!scan.codebook.blinks(u)) {
             verdicts.note(u, DetectionVerdict::NotFound, Undetected::Cause::NeverBlinked,
-                          scan.codebook.lit[u].empty() ? "its LED was never lit"
-                                                       : "its LED was never dark, or only like a drift");
+                          scan.codebook.lit[u].empty()
+                              ? Sentence::saying("its LED was never lit")
+                              : Sentence::saying("its LED was never dark, or only like a drift"));
         } else if (sharing[scan.codebook.representative[u]] > 1) {
             verdicts.note(u, DetectionVerdict::Ambiguous, Undetected::Cause::Alike,
-                          fmt::format("lit in the same frames as {} other modules",
-                                      sharing[scan.codebook.representative[u]] - 1));
+                          Sentence::saying("lit in the same frames as {} other modules",
+                                           sharing[scan.codebook.representative[u]] - 1));
         } else if (spots.first != spots.second && spoilt) {
             verdicts.replace(u, {{},
                                  DetectionVerdict::NotFound,
-                                 "the camera moved while its word was shown",
+                                 Sentence::saying("the camera moved while its word was shown"),
                                  {},
                                  Undetected::Cause::CameraMoved});
         } else if (spots.first != spots.second) {
@@ -80,7 +79,7 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
     FramePass pass(frames, load, words->coloured, context);
     SpotFinder finder(options.candidates);
     cv::Size size;
-    auto done = pass.run("looking for spots", 0, 0.4, [&](std::size_t, const FramePixels& frame) {
+    auto done = pass.run(Sentence::saying("looking for spots"), 0, 0.4, [&](std::size_t, const FramePixels& frame) {
         size = frame.size();
         finder.add(frame, words->coloured);
     });
@@ -101,7 +100,7 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
     ScanMotion motion(options.windowRadius, options.fit);
     if (!candidates.empty()) {
         scan.series = SpotSeries(codebook.planes(), candidates.size());
-        done = pass.run("reading spots", 0.4, 0.75, [&](std::size_t k, const FramePixels& frame) {
+        done = pass.run(Sentence::saying("reading spots"), 0.4, 0.75, [&](std::size_t k, const FramePixels& frame) {
             for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane)
                 scan.series.read(frame, candidates, options.windowRadius, plane, words->planes[plane].channel);
         });
@@ -129,7 +128,7 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
                 motion.add(frame, plane, words->planes[plane].channel, scan.noise);
             waiting.clear();
         };
-        done = pass.run("measuring spots", 0.75, 1, [&](std::size_t k, const FramePixels& frame) {
+        done = pass.run(Sentence::saying("measuring spots"), 0.75, 1, [&](std::size_t k, const FramePixels& frame) {
             for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane)
                 waiting.emplace_back(plane, frame);
             if (waiting.size() >= kAtOnce)
@@ -159,7 +158,7 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
     result.look = frames.empty() ? 0 : frames.front().look;
     for (WordReading& reading : result.readings)
         reading.look = result.look;
-    context.report("measuring spots", 1);
+    context.report(Sentence::saying("measuring spots"), 1);
     return result;
 }
 

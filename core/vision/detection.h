@@ -6,6 +6,7 @@
 
 #include "core/geometry/ids.h"
 #include "core/geometry/se3.h"
+#include "core/geometry/sentence.h"
 
 namespace skincal {
 
@@ -42,7 +43,7 @@ struct Undetected {
     };
     ModuleId module;
     DetectionVerdict verdict = DetectionVerdict::NotFound;
-    std::string reason;
+    Sentence reason;
     /// Where several spots blink its word alike: all of them, brightest first, at least two. The picture can't tell
     /// which is the LED; what is known of the body may (see settleSpots). Empty where there is nothing to choose from.
     std::vector<SpotChoice> spots{};

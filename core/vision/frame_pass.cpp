@@ -2,7 +2,7 @@
 
 namespace skincal {
 
-tl::expected<void, ScanError> FramePass::run(std::string_view stage, double from, double to,
+tl::expected<void, ScanError> FramePass::run(const Sentence& stage, double from, double to,
                                              const std::function<void(std::size_t, const FramePixels&)>& visit) {
     for (std::size_t k = 0; k < frames_.size(); ++k) {
         if (context_.isCancelled())

@@ -27,7 +27,7 @@ class FramePass {
 
     /// @param from, to  the share of the whole work that this pass is
     /// Fails as FramePixels::make, with the loader's error, or with "cancelled".
-    [[nodiscard]] tl::expected<void, ScanError> run(std::string_view stage, double from, double to,
+    [[nodiscard]] tl::expected<void, ScanError> run(const Sentence& stage, double from, double to,
                                                     const std::function<void(std::size_t, const FramePixels&)>& visit);
 
   private:

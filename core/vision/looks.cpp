@@ -1,7 +1,5 @@
 #include "core/vision/looks.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -88,7 +86,7 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
         });
         if (there != before.end()) {
             missing->verdict = DetectionVerdict::Ambiguous;
-            missing->reason = fmt::format("its spot is where module {} was found", there->module.value);
+            missing->reason = Sentence::saying("its spot is where module {} was found", there->module.value);
             missing->cause = Undetected::Cause::Alike;
             missing->spots.clear();
             continue;

@@ -1,7 +1,5 @@
 #include "core/vision/matched_spot.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/vision/parallel.h"
@@ -52,15 +50,16 @@ std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, st
                 for (const std::size_t word : match.words) {
                     verdicts.note(word, DetectionVerdict::Ambiguous,
                                   match.runnerUp ? Undetected::Cause::Alike : Undetected::Cause::TooWeak,
-                                  match.runnerUp ? fmt::format("a spot fits its word no better than that of module {}",
-                                                               modules[*match.runnerUp].value)
-                                                 : std::string("a spot blinks its word too faintly to be sure"));
+                                  match.runnerUp
+                                      ? Sentence::saying("a spot fits its word no better than that of module {}",
+                                                         modules[*match.runnerUp].value)
+                                      : Sentence::saying("a spot blinks its word too faintly to be sure"));
                 }
                 break;
             case SeriesVerdict::Unlike:
                 verdicts.countUnexplained();
                 verdicts.note(match.words.front(), DetectionVerdict::NotFound, Undetected::Cause::NotAnLed,
-                              "a spot blinks somewhat like its word, but with other light in it");
+                              Sentence::saying("a spot blinks somewhat like its word, but with other light in it"));
                 break;
             case SeriesVerdict::Dark:
                 break;

@@ -1,7 +1,5 @@
 #include "core/vision/paper_detector.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -23,7 +21,7 @@ using Cause = Undetected::Cause;
 
 struct Miss {
     Cause cause = Cause::OutOfSight;
-    std::string reason;
+    Sentence reason;
 };
 
 /// Pixel, or why there is none.
@@ -84,11 +82,14 @@ std::vector<cv::KeyPoint> blobs(const cv::Mat& overlay, const PaperDetectorOptio
     return keypoints;
 }
 
-Outcome onlyBlob(const std::vector<cv::KeyPoint>& found, const PaperDetectorOptions& options, std::string_view which) {
+Outcome onlyBlob(const std::vector<cv::KeyPoint>& found, const PaperDetectorOptions& options, bool isOfItsColour) {
     if (found.empty())
-        return tl::unexpected(Miss{Cause::OutOfSight, fmt::format("no blob{}", which)});
+        return tl::unexpected(Miss{Cause::OutOfSight, isOfItsColour ? Sentence::saying("no blob of its colour")
+                                                                    : Sentence::saying("no blob")});
     if (found.size() > options.maxBlobs)
-        return tl::unexpected(Miss{Cause::Reflected, fmt::format("{} blobs{} instead of one", found.size(), which)});
+        return tl::unexpected(Miss{
+            Cause::Reflected, isOfItsColour ? Sentence::saying("{} blobs of its colour instead of one", found.size())
+                                            : Sentence::saying("{} blobs instead of one", found.size())});
     return Vector2d(static_cast<double>(found[0].pt.x), static_cast<double>(found[0].pt.y));
 }
 
@@ -132,11 +133,11 @@ class Detector {
         std::vector<FramePair> pairs = group.pairs;
         if (pairs.size() > static_cast<std::size_t>(options_.binaryImages))
             pairs.resize(static_cast<std::size_t>(options_.binaryImages));
-        const auto none = [&](const char* why) {
+        const auto none = [&](const Sentence& why) {
             return std::vector<Outcome>(group.lit.size(), tl::unexpected(Miss{Cause::NeverBlinked, why}));
         };
         if (pairs.empty())
-            return none("the view has no background frame");
+            return none(Sentence::saying("the view has no background frame"));
         cv::Mat overlay;
         cv::Mat colour;
         for (const FramePair& pair : pairs) {
@@ -151,7 +152,7 @@ class Detector {
                 continue;
             }
             if (foreground->channels() != 3 || background->channels() != 3)
-                return none("lit in colours, but its pictures have none");
+                return none(Sentence::saying("lit in colours, but its pictures have none"));
             const cv::Mat difference = blurred(*foreground, *background, options_);
             multiply(overlay, binary(brightestChannel(difference), options_));
             if (colour.empty())
@@ -160,7 +161,7 @@ class Detector {
         }
         const auto found = blobs(overlay, options_);
         if (!group.coloured)
-            return std::vector{onlyBlob(found, options_, "")};
+            return std::vector{onlyBlob(found, options_, false)};
         return byColour(found, colour, group.lit);
     }
 
@@ -176,7 +177,7 @@ class Detector {
         std::vector<Outcome> outcomes;
         outcomes.reserve(ofLed.size());
         for (const auto& candidates : ofLed)
-            outcomes.push_back(onlyBlob(candidates, options_, " of its colour"));
+            outcomes.push_back(onlyBlob(candidates, options_, true));
         return outcomes;
     }
 
@@ -209,8 +210,8 @@ class Verdict {
         } else if (!outcome_ || (!*outcome_ && !contradicted_)) {
             outcome_ = outcome;
         } else if (*outcome_ && outcome && (**outcome_ - *outcome).norm() > 0.5 * options.blurSize) {
-            outcome_ =
-                tl::unexpected(Miss{Cause::Reflected, "blobs of its colour at different places in different lit sets"});
+            outcome_ = tl::unexpected(Miss{
+                Cause::Reflected, Sentence::saying("blobs of its colour at different places in different lit sets")});
             contradicted_ = true;
         }
     }
@@ -246,7 +247,7 @@ tl::expected<ViewDetections, ScanError> detectPaper(std::string name, std::span<
     for (std::size_t i = 0; i < groups.size(); ++i) {
         if (context.isCancelled())
             return tl::unexpected(ScanError{"cancelled", true});
-        context.report("detecting LEDs", static_cast<double>(i) / static_cast<double>(groups.size()));
+        context.report(Sentence::saying("detecting LEDs"), static_cast<double>(i) / static_cast<double>(groups.size()));
         const auto outcomes = detector.detect(groups[i]);
         if (!outcomes)
             return tl::unexpected(outcomes.error());
@@ -272,9 +273,10 @@ tl::expected<ViewDetections, ScanError> detectPaper(std::string name, std::span<
         else
             view.undetected.push_back({id,
                                        DetectionVerdict::NotFound,
-                                       everLit.count(id) > 0 ? "lit only together with others: the paper's detector "
-                                                               "needs it alone, or each LED in a colour of its own"
-                                                             : "its LED was never lit",
+                                       everLit.count(id) > 0
+                                           ? Sentence::saying("lit only together with others: the paper's detector "
+                                                              "needs it alone, or each LED in a colour of its own")
+                                           : Sentence::saying("its LED was never lit"),
                                        {},
                                        Cause::NeverBlinked});
     }

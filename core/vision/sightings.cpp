@@ -1,7 +1,5 @@
 #include "core/vision/sightings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -75,7 +73,7 @@ void dropStrangeWidths(std::vector<Sighting>& sightings, Verdicts& verdicts) {
         if (isStrange)
             verdicts.replace(sighting.module, {{},
                                                DetectionVerdict::NotFound,
-                                               std::string(name(SpotFitError::WrongShape)),
+                                               sentenceOf(SpotFitError::WrongShape),
                                                {},
                                                Undetected::Cause::NotAnLed});
         return isStrange;
@@ -93,7 +91,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             const std::size_t module = match.series.words[j];
             const auto& fit = match.fits[j];
             if (!fit) {
-                verdicts.note(module, DetectionVerdict::NotFound, causeOf(fit.error()), std::string(name(fit.error())));
+                verdicts.note(module, DetectionVerdict::NotFound, causeOf(fit.error()), sentenceOf(fit.error()));
                 continue;
             }
             // The skirt of a neighbour blinks the neighbour's word; its centre lies elsewhere. Where two LEDs share one
@@ -102,7 +100,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             const double allowed = shared ? options.windowRadius - 1.0 : options.maxShift_px;
             if ((fit->centre - Vector2d(match.spot.x, match.spot.y)).norm() > allowed) {
                 verdicts.note(module, DetectionVerdict::NotFound, Undetected::Cause::NotAnLed,
-                              "only stray light blinks its word");
+                              Sentence::saying("only stray light blinks its word"));
                 continue;
             }
             // Clipping hides a second LED from the series, which then looks like a disturbance, and makes light no
@@ -111,7 +109,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
                        : fit->clipped && (hasMoreLight(scan, match) ||
                                           match.maps[j].strayShare(fit->centre, 3.5) > options.maxStrayShare)) {
                 verdicts.note(module, DetectionVerdict::Ambiguous, Undetected::Cause::TooBright,
-                              "its spot is clipped and has other light in it");
+                              Sentence::saying("its spot is clipped and has other light in it"));
                 continue;
             }
             sightings.push_back({module, *fit, whenSeen(scan.codebook, match.series, module), i});
@@ -150,9 +148,9 @@ std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, const Decod
 
 Undetected undecided(const std::vector<Sighting>& spots, const DecoderOptions& options) {
     Undetected result{{}, DetectionVerdict::Ambiguous, {}, {}, Undetected::Cause::Reflected};
-    result.reason = spots.size() == 2 ? fmt::format("two spots {:.0f} px apart blink its word",
-                                                    (spots[1].fit.centre - spots[0].fit.centre).norm())
-                                      : fmt::format("{} spots blink its word", spots.size());
+    result.reason = spots.size() == 2 ? Sentence::saying("two spots {:.0f} px apart blink its word",
+                                                         (spots[1].fit.centre - spots[0].fit.centre).norm())
+                                      : Sentence::saying("{} spots blink its word", spots.size());
     // One that is left out might be the LED itself.
     if (spots.size() > static_cast<std::size_t>(options.maxSpots))
         return result;

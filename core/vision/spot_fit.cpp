@@ -58,16 +58,16 @@ std::optional<SpotParameters> startOf(const SpotWindow& window, const SpotPrior&
 
 }  // namespace
 
-std::string_view name(SpotFitError error) {
+Sentence sentenceOf(SpotFitError error) {
     switch (error) {
         case SpotFitError::TooFewPixels:
-            return "too few of its pixels are not clipped";
+            return Sentence::saying("too few of its pixels are not clipped");
         case SpotFitError::NoLight:
-            return "its spot does not rise above the noise";
+            return Sentence::saying("its spot does not rise above the noise");
         case SpotFitError::WrongShape:
-            return "its spot has not the shape of a light point";
+            return Sentence::saying("its spot has not the shape of a light point");
         case SpotFitError::OutsideWindow:
-            return "only stray light blinks its word";
+            return Sentence::saying("only stray light blinks its word");
     }
     throw std::logic_error("unknown SpotFitError");
 }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string_view>
 #include <tl/expected.hpp>
 
 #include "core/geometry/se3.h"
+#include "core/geometry/sentence.h"
 
 namespace skincal {
 
@@ -51,7 +51,7 @@ enum class SpotFitError {
     WrongShape,     ///< not a round spot, or far too wide or narrow
     OutsideWindow,  ///< the light comes from beyond the window's edge
 };
-[[nodiscard]] std::string_view name(SpotFitError error);
+[[nodiscard]] Sentence sentenceOf(SpotFitError error);
 
 struct SpotFit {
     Vector2d centre = Vector2d::Zero();  ///< in the picture, px

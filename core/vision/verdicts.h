@@ -14,7 +14,7 @@ class Verdicts {
     explicit Verdicts(std::size_t modules) : reasons_(modules) {}
 
     /// The first reason stays, but what nearly was a find says more than what never was.
-    void note(std::size_t module, DetectionVerdict verdict, Undetected::Cause cause, std::string reason) {
+    void note(std::size_t module, DetectionVerdict verdict, Undetected::Cause cause, Sentence reason) {
         auto& known = reasons_[module];
         const bool better = verdict == DetectionVerdict::Ambiguous && known.verdict == DetectionVerdict::NotFound;
         if (known.reason.empty() || better)
@@ -26,7 +26,7 @@ class Verdicts {
         Undetected result = std::move(reasons_[module]);
         result.module = id;
         if (result.reason.empty())
-            result.reason = "no spot blinks its word";
+            result.reason = Sentence::saying("no spot blinks its word");
         return result;
     }
 

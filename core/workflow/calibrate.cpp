@@ -18,8 +18,9 @@ tl::expected<ViewDetections, CalibrateError> detect(const Recording& recording, 
         return ViewDetections{view.name, view.detections, {}};
     const FrameLoader loadFrameOfView = [&](std::size_t frame) { return load(v, frame); };
     RunContext part = context;
-    part.report = [&](std::string_view, double done) {
-        context.report("reading frames", (static_cast<double>(v) + done) / static_cast<double>(recording.views.size()));
+    part.report = [&](const Sentence&, double done) {
+        context.report(Sentence::saying("reading frames"),
+                       (static_cast<double>(v) + done) / static_cast<double>(recording.views.size()));
     };
     const bool paper = options.method == Method::Paper && suitsPaperDetector(view.frames, options.paperDetector);
     auto found = paper ? detectPaper(view.name, modules, view.frames, loadFrameOfView, options.paperDetector, part)
@@ -36,7 +37,9 @@ void applyDecisions(const Recording& recording, ViewDetections& view) {
             continue;
         const auto removed =
             std::erase_if(view.found, [&](const LedDetection& d) { return d.module == decision.module; });
-        const std::string why = "rejected by the operator" + (decision.reason.empty() ? "" : ": " + decision.reason);
+        const Sentence why = decision.reason.empty()
+                                 ? Sentence::saying("rejected by the operator")
+                                 : Sentence::saying("rejected by the operator: {}", decision.reason);
         if (removed > 0)
             view.undetected.push_back(
                 {decision.module, DetectionVerdict::NotFound, why, {}, Undetected::Cause::Rejected});

@@ -83,7 +83,7 @@ tl::expected<void, FileError> writePictures(const World& world, const Recording&
         const auto& frames = recording.views[v].frames;
         for (std::size_t f = 0; f < frames.size(); ++f) {
             const double share = static_cast<double>(f) / static_cast<double>(frames.size());
-            context.report("drawing pictures", (static_cast<double>(v) + share) / views);
+            context.report(Sentence::saying("drawing pictures"), (static_cast<double>(v) + share) / views);
             if (context.isCancelled())
                 return tl::unexpected(FileError{directory, "", "cancelled, nothing is recorded"});
             if (auto written = writeFrame(directory, frames[f].file, *load(v, f)); !written)

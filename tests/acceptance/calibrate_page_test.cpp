@@ -70,9 +70,9 @@ TEST_F(FaultsOnThePage, EveryFindingIsPrintedOnceAndNoLineIsTooLong) {
     ASSERT_FALSE(body->quality.findings.empty());
     const std::string text = unwrapped(page_.output);
     for (const Finding& finding : body->quality.findings)
-        EXPECT_EQ(countOf(text, unwrapped(finding.text)), 1U) << finding.text;
-    for (const std::string& warning : body->quality.warnings)
-        EXPECT_EQ(countOf(text, unwrapped(warning)), 1U) << warning;
+        EXPECT_EQ(countOf(text, unwrapped(finding.text.english())), 1U) << finding.text;
+    for (const Sentence& warning : body->quality.warnings)
+        EXPECT_EQ(countOf(text, unwrapped(warning.english())), 1U) << warning;
     for (const std::string& line : linesOf(page_.output)) {
         EXPECT_TRUE(columnsOf(line) <= 100 || line.starts_with("body model")) << line;
         EXPECT_FALSE(line.ends_with(' ')) << line;

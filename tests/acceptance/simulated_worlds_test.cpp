@@ -261,7 +261,7 @@ TEST_F(WritingSimulations, CancelledHalfWayLeavesNoRecording) {
 TEST_F(WritingSimulations, ThereIsNoRecordingBeforeItsLastPicture) {
     bool early = false;
     RunContext context;
-    context.report = [&](std::string_view, double) {
+    context.report = [&](const Sentence&, double) {
         early = early || std::filesystem::exists(directory_ / "w" / "recording.json");
     };
     ASSERT_TRUE(writeSimulation(worldOf("coded"), directory_ / "w", false, context));

@@ -10,6 +10,7 @@
 
 #include "ui/pages/mesh_panel.h"
 #include "ui/pages/picture_panel.h"
+#include "ui/texts/sentences.h"
 #include "ui/widgets/theme.h"
 
 namespace skincal {
@@ -174,7 +175,8 @@ void ResultPage::refresh() {
     reasons_->setEnabled(!isStale);
     reason_->setText(
         isStale && session.isSolving() ? tr("Stale: of before the last change. The newest data are being solved …")
-        : isStale  ? tr("Stale: of before the last change. The newest data give no body: %1").arg(session.failure())
+        : isStale
+            ? tr("Stale: of before the last change. The newest data give no body: %1").arg(said(session.failure()))
         : isPlaced ? tr("All figures are of the newest data. Colours and ellipsoids of the 3D view are chosen "
                         "above it.")
                    : tr("Scan a view to place them."));
@@ -185,12 +187,12 @@ void ResultPage::refresh() {
         figures_->setItem(row, 1, new QTableWidgetItem(figure));
     }
     for (const auto* texts : {&quality.warnings, &quality.missing}) {
-        for (const std::string& text : *texts)
-            reasons_->addItem(QString::fromStdString(text));
+        for (const Sentence& text : *texts)
+            reasons_->addItem(said(text));
     }
     for (const Shortfall& shortfall : solution->shortfalls) {
         // The verdict may have named it.
-        const QString text = QString::fromStdString(shortfall.text);
+        const QString text = said(shortfall.text);
         if (reasons_->findItems(text, Qt::MatchExactly).empty())
             reasons_->addItem(text);
     }

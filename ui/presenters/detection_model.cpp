@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "ui/texts/sentences.h"
+
 namespace skincal {
 namespace {
 
@@ -53,7 +55,7 @@ std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Skin
         DetectionRow& row = rows[undetected.module];
         row.module = undetected.module;
         row.state = stateOf(undetected);
-        row.reason = QString::fromStdString(undetected.reason);
+        row.reason = said(undetected.reason);
         if (!undetected.spots.empty())
             several.insert(undetected.module);
     }
@@ -97,7 +99,7 @@ void addResiduals(const BodyView& view, const ScannedView& scanned, std::map<Mod
         if (observation.residual)
             row.residual_px = observation.residual->norm();
         if (isOpen(row.state))
-            row.reason = QString::fromStdString(observation.reason);
+            row.reason = said(observation.reason);
         // The body told which of several spots it is.
         if (isOpen(row.state) && observation.verdict == ObservationVerdict::Used) {
             row.state = State::Used;
@@ -106,7 +108,7 @@ void addResiduals(const BodyView& view, const ScannedView& scanned, std::map<Mod
         }
         if (observation.verdict == ObservationVerdict::Rejected) {
             row.state = State::SetAside;
-            row.reason = QString::fromStdString(observation.reason);
+            row.reason = said(observation.reason);
         }
     }
 }

@@ -12,6 +12,7 @@
 #include "core/formats/files.h"
 #include "ui/presenters/lens_words.h"
 #include "ui/presenters/report_facts.h"
+#include "ui/texts/sentences.h"
 
 namespace skincal {
 namespace {
@@ -94,13 +95,12 @@ ReportFacts ExportPresenter::factsOf(const Solution& solution) const {
     ReportFacts facts;
     facts.when = now();
     for (const Shortfall& shortfall : solution.shortfalls)
-        facts.shortfalls.push_back(shortfall.text);
+        facts.shortfalls << said(shortfall.text);
     if (solution.measurements->camera.width > 0)
         facts.camera = solution.measurements->camera;
     const Session& session = workbench_.session();
     if (session.isStale())
-        facts.shortfalls.push_back(
-            tr("the data have changed since: this body is of before the last change").toStdString());
+        facts.shortfalls << tr("the data have changed since: this body is of before the last change");
     if (const int skin = workbench_.chosenSkin(); skin >= 0)
         facts.skinDevice = workbench_.skinOffers.at(static_cast<std::size_t>(skin)).name;
     if (const int camera = workbench_.chosenCamera(); camera >= 0)

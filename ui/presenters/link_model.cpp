@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/estimation/skin_layout.h"
+#include "ui/texts/sentences.h"
 
 namespace skincal {
 namespace {
@@ -23,10 +24,10 @@ std::set<LinkKey> keysOf(const Skin& skin) {
 std::vector<JudgedLink> judgedLinks(Session& session) {
     const Decisions& decisions = session.decisions();
     // The operator's word counts at once, the next solution only says so, too.
-    const auto judged = [&](const Link& link, LinkKind kind, const std::string& reason) {
+    const auto judged = [&](const Link& link, LinkKind kind, const Sentence& reason) {
         const auto word = decisions.links.find(LinkKey::of(link));
         const bool decided = word != decisions.links.end();
-        return JudgedLink{link, decided ? word->second : kind, QString::fromStdString(reason), decided};
+        return JudgedLink{link, decided ? word->second : kind, said(reason), decided};
     };
     std::vector<JudgedLink> links;
     // A solution of an older network would name links that are gone.

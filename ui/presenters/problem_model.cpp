@@ -3,19 +3,12 @@
 #include <algorithm>
 
 #include "ui/presenters/camera_words.h"
+#include "ui/texts/sentences.h"
 
 namespace skincal {
 namespace {
 
 using Severity = Problem::Severity;
-
-/// Core's sentences begin in lower case: they also stand behind a colon.
-QString sentence(const std::string& text) {
-    QString result = QString::fromStdString(text);
-    if (!result.isEmpty())
-        result[0] = result[0].toUpper();
-    return result;
-}
 
 /// A camera that stands moves by less than this between two pictures: noise.
 constexpr double kMoved_px = 1.0;
@@ -99,14 +92,14 @@ Problem problemOf(const WiringFault& fault) {
 
 void addSolution(const Solution& solution, std::vector<Problem>& problems) {
     for (const Finding& finding : solution.body.quality.findings)
-        problems.push_back({Severity::Warning, stepOf(finding), sentence(finding.text), finding.modules,
+        problems.push_back({Severity::Warning, stepOf(finding), saidAlone(finding.text), finding.modules,
                             finding.view.value_or(std::string()), finding.pose.value_or(-1)});
     for (const Shortfall& shortfall : solution.shortfalls) {
         const Step step = stepOf(shortfall.kind);
         // Before the first view all patches are unseen: that is no problem, but the next step.
         if (step == Step::Views && solution.body.views.empty())
             continue;
-        problems.push_back({Severity::Note, step, sentence(shortfall.text), shortfall.modules,
+        problems.push_back({Severity::Note, step, saidAlone(shortfall.text), shortfall.modules,
                             shortfall.views.empty() ? std::string() : shortfall.views.front()});
     }
 }
@@ -218,8 +211,8 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
              {}});
     if (scan_.state().phase == ScanRun::Phase::Failed)
         problems.push_back({Severity::Error, Step::Scan, tr("The scan was broken off: %1").arg(scan_.why()), {}, {}});
-    if (!session.failure().isEmpty())
-        problems.push_back({Severity::Error, Step::Result, session.failure(), {}, {}});
+    if (!session.failure().empty())
+        problems.push_back({Severity::Error, Step::Result, saidAlone(session.failure()), {}, {}});
     for (const WiringFault& fault : wiringFaults(session.measured().skin))
         problems.push_back(problemOf(fault));
     for (const ScannedView& view : session.measured().views) {

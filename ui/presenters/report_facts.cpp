@@ -70,8 +70,8 @@ std::vector<std::pair<std::size_t, std::size_t>> byLead(const std::vector<Report
     return order;
 }
 
-std::vector<QString> sentencesOf(const Decisions& decisions) {
-    std::vector<QString> sentences;
+QStringList sentencesOf(const Decisions& decisions) {
+    QStringList sentences;
     for (const auto& [link, kind] : decisions.links) {
         const QString ends = ReportWords::tr("Link of module %1, port %2, and module %3, port %4: ")
                                  .arg(link.a.value)

@@ -137,7 +137,7 @@ Progress StepModel::progress() const {
     p.isCameraLost = isCameraLost_;
     p.views = session.measured().views.size() - session.decisions().droppedViews.size();
     p.isSolving = session.isSolving();
-    p.isUnsolved = !session.isSolving() && !session.failure().isEmpty();
+    p.isUnsolved = !session.isSolving() && !session.failure().empty();
     if (const auto& solution = session.solution()) {
         p.hasBody = solution->solved.anyViewPlaced();
         p.patches = solution->body.patches.size();

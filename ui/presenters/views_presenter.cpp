@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "ui/texts/sentences.h"
+
 namespace skincal {
 
 ViewsPresenter::ViewsPresenter(Workbench& workbench, QObject* parent) : QObject(parent), workbench_(workbench) {
@@ -78,7 +80,7 @@ QString ViewsPresenter::instruction() const {
     if (isEnough())
         return tr("Enough views: every patch is placed, and seen from more than one side.");
     if (const NextView* view = next()) {
-        const QString where = QString::fromStdString(view->words);
+        const QString where = said(view->words);
         return missing > 0 ? tr("%n patches are not placed yet.", nullptr, static_cast<int>(missing)) + u' ' + where
                            : where;
     }
@@ -96,8 +98,7 @@ QString ViewsPresenter::reason() const {
     const QString gain = tr("The place of the worst module among the others is then known to %1 instead of %2 mm.")
                              .arg(1e3 * view->gain.worstAfter, 0, 'f', 2)
                              .arg(1e3 * view->gain.worstBefore, 0, 'f', 2);
-    return isEnough() ? tr("One more makes it more exact: %1. %2").arg(QString::fromStdString(view->words), gain)
-                      : gain;
+    return isEnough() ? tr("One more makes it more exact: %1. %2").arg(said(view->words), gain) : gain;
 }
 
 bool ViewsPresenter::goesToTarget() const {

@@ -11,6 +11,7 @@
 
 #include "ui/print/html.h"
 #include "ui/print/report_detections.h"
+#include "ui/texts/sentences.h"
 
 namespace skincal {
 namespace {
@@ -21,10 +22,10 @@ QString tr(const char* text) {
     return QCoreApplication::translate("Report", text);
 }
 
-QString list(const std::vector<std::string>& texts) {
+QString list(const QStringList& texts) {
     QString html = QStringLiteral("<ul>\n");
-    for (const std::string& text : texts)
-        html += QStringLiteral("<li>%1</li>\n").arg(escaped(text));
+    for (const QString& text : texts)
+        html += QStringLiteral("<li>%1</li>\n").arg(text.toHtmlEscaped());
     return html + QStringLiteral("</ul>\n");
 }
 
@@ -124,7 +125,7 @@ QString patches(const BodyModel& body) {
         rows += row({QString::number(patch.id.value), QString::number(patch.origin.value),
                      QString::number(patch.modules.size()), QString::number(patch.views.size()),
                      spreadOf(std::move(positions), millimetres), spreadOf(std::move(rotations), degrees),
-                     escaped(patch.status)});
+                     said(patch.status).toHtmlEscaped()});
     }
     return table({tr("Patch"), tr("Origin"), tr("Modules"), tr("Views"), tr("σ, mm"), tr("σ, °"), tr("Status")}, rows);
 }
@@ -137,7 +138,7 @@ QString views(const BodyModel& body) {
             used += observation.verdict == ObservationVerdict::Used ? 1 : 0;
         rows += row({escaped(view.name), QString::number(used),
                      view.residual_rms_px ? QString::number(*view.residual_rms_px, 'f', 3) : tr("–"),
-                     escaped(view.status)});
+                     said(view.status).toHtmlEscaped()});
     }
     return table({tr("View"), tr("Detections used"), tr("Residual, px"), tr("Status")}, rows);
 }
@@ -156,7 +157,7 @@ QString modules(const BodyModel& body, const ReportFacts& facts) {
         const Sigma sigma = sigmaOf(module);
         cells << (sigma.position ? millimetres(*sigma.position) : tr("–"))
               << (sigma.rotation ? degrees(*sigma.rotation) : tr("–"))
-              << (!module.T_body_module ? escaped(module.status)
+              << (!module.T_body_module ? said(module.status).toHtmlEscaped()
                   : module.seen         ? tr("pictures")
                                         : tr("gravity and links"));
         if (!facts.uniqueIds.empty()) {
@@ -175,12 +176,13 @@ QString modules(const BodyModel& body, const ReportFacts& facts) {
 }  // namespace
 
 QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
-    std::vector<std::string> reasons = body.quality.warnings;
-    for (const auto* more : {&body.quality.missing, &facts.shortfalls})
-        // The verdict may have named a shortfall.
-        std::copy_if(more->begin(), more->end(), std::back_inserter(reasons), [&](const std::string& reason) {
-            return std::find(reasons.begin(), reasons.end(), reason) == reasons.end();
-        });
+    QStringList reasons;
+    for (const auto* some : {&body.quality.warnings, &body.quality.missing}) {
+        for (const Sentence& reason : *some)
+            reasons << said(reason);
+    }
+    reasons += facts.shortfalls;
+    reasons.removeDuplicates();  // the verdict may have named a shortfall
     QString html = QStringLiteral(
                        "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>%1</title>\n"
                        "<style>body { font-family: sans-serif; margin: 2em; } table { border-collapse: "
@@ -192,12 +194,8 @@ QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
                 .arg(tr("Verdict: %1").arg(QString::fromUtf8(name(body.quality.trust).data())));
     html += reasons.empty() ? QStringLiteral("<p>%1</p>\n").arg(tr("Nothing is missing, and nothing disagrees."))
                             : list(reasons);
-    if (!facts.decisions.empty()) {
-        std::vector<std::string> decisions;
-        for (const QString& decision : facts.decisions)
-            decisions.push_back(decision.toStdString());
-        html += heading(tr("Decided by the operator")) + list(decisions);
-    }
+    if (!facts.decisions.empty())
+        html += heading(tr("Decided by the operator")) + list(facts.decisions);
     html += heading(tr("Made by")) + origin(body.generator, facts);
     if (facts.camera)
         html += heading(tr("Camera")) + camera(facts);

@@ -2,6 +2,7 @@
 
 #include <QByteArray>
 #include <QString>
+#include <QStringList>
 #include <map>
 #include <vector>
 
@@ -28,14 +29,14 @@ struct ReportedScan {
 
 /// What a report says besides what the body itself knows.
 struct ReportFacts {
-    QString when{};                         ///< it was made, as it shall be printed
-    std::vector<std::string> shortfalls{};  ///< what the data lack, in sentences
-    std::optional<CameraModel> camera{};    ///< that took the pictures
-    QString cameraFrom{};                   ///< where its intrinsics come from; empty where nobody knows
-    QString skinDevice{};                   ///< by which the data came; empty where nobody knows
+    QString when{};                       ///< it was made, as it shall be printed
+    QStringList shortfalls{};             ///< what the data lack
+    std::optional<CameraModel> camera{};  ///< that took the pictures
+    QString cameraFrom{};                 ///< where its intrinsics come from; empty where nobody knows
+    QString skinDevice{};                 ///< by which the data came; empty where nobody knows
     QString cameraDevice{};
     std::size_t poses = 0;                        ///< that count
-    std::vector<QString> decisions{};             ///< of the operator, in sentences
+    QStringList decisions{};                      ///< of the operator, in sentences
     std::map<ModuleId, std::string> uniqueIds{};  ///< of modules that have one
     std::vector<ReportedScan> scans{};            ///< that count
 };

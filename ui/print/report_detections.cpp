@@ -3,6 +3,7 @@
 #include <QCoreApplication>
 
 #include "ui/print/html.h"
+#include "ui/texts/sentences.h"
 
 namespace skincal {
 namespace {
@@ -50,7 +51,7 @@ QString detections(const ReportedScan& scan, const BodyModel& body) {
             if (observation.verdict == ObservationVerdict::Used)
                 verdict = tr("used");
             else if (!detection.isRejected && !observation.reason.empty())
-                verdict = escaped(observation.reason);
+                verdict = said(observation.reason).toHtmlEscaped();
             if (observation.residual)
                 residual = QString::number(observation.residual->norm(), 'f', 3);
         }

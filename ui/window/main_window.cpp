@@ -19,6 +19,7 @@
 #include "ui/pages/pose_page.h"
 #include "ui/pages/result_page.h"
 #include "ui/scene3d/body_view_widget.h"
+#include "ui/texts/sentences.h"
 #include "ui/widgets/primary_button.h"
 #include "ui/widgets/theme.h"
 #include "ui/window/demo_stage.h"
@@ -85,7 +86,7 @@ MainWindow::MainWindow(Workbench& workbench, QWidget* parent)
             statusBar()->clearMessage();
     });
     connect(&session, &Session::solvingProgressed, this,
-            [this](const QString& stage, double) { statusBar()->showMessage(tr("Solving: %1").arg(stage)); });
+            [this](const Sentence& stage, double) { statusBar()->showMessage(tr("Solving: %1").arg(said(stage))); });
     connect(&session, &Session::modifiedChanged, this, &QWidget::setWindowModified);
     connect(&session, &Session::fileFailed, this, [this](const QString& why) {
         statusBar()->clearMessage();

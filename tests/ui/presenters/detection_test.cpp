@@ -27,7 +27,8 @@ OpenedRecording withCauses(const std::vector<Undetected::Cause>& causes) {
     OpenedRecording opened = openedFrom(recordingOf(buildWorld(scenario, 1)));
     ViewDetections& decoded = opened.measured.views.front().decoded;
     for (const Undetected::Cause cause : causes) {
-        decoded.undetected.push_back({decoded.found.back().module, DetectionVerdict::NotFound, "a reason", {}, cause});
+        decoded.undetected.push_back(
+            {decoded.found.back().module, DetectionVerdict::NotFound, Sentence::verbatim("a reason"), {}, cause});
         decoded.found.pop_back();
     }
     return opened;

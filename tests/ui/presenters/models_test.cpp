@@ -109,8 +109,8 @@ TEST(Models, AreSoundDuringAWholeCalibration) {
             if (text.starts_with("<!DOCTYPE")) {
                 // As the Result page does.
                 for (const Shortfall& shortfall : desk.session().solution()->shortfalls)
-                    EXPECT_TRUE(
-                        QString::fromStdString(text).contains(QString::fromStdString(shortfall.text).toHtmlEscaped()));
+                    EXPECT_TRUE(QString::fromStdString(text).contains(
+                        QString::fromStdString(shortfall.text.english()).toHtmlEscaped()));
                 EXPECT_EQ(text.find("Nothing is missing") == std::string::npos,
                           !desk.session().solution()->shortfalls.empty() ||
                               !desk.session().solution()->body.quality.warnings.empty());
@@ -156,7 +156,7 @@ TEST(DetectionModel, TellsWhichOfSeveralSpotsTheBodyTook) {
     const auto doubt = [&](const Vector2d& offset, bool isLedSeen) {
         const LedDetection led = decoded.found.back();
         decoded.found.pop_back();
-        Undetected several{led.module, DetectionVerdict::Ambiguous, "two spots blink its word"};
+        Undetected several{led.module, DetectionVerdict::Ambiguous, Sentence::verbatim("two spots blink its word")};
         several.cause = Undetected::Cause::Reflected;
         several.spots = {{led.pixel + Vector2d(50, 20), led.sigma_px, 1},
                          {led.pixel + offset, led.sigma_px, isLedSeen ? 0.9 : 0.8}};

@@ -25,15 +25,15 @@ BodyModel smallBody() {
     placed.T_body_module = makeIsometry(Matrix3d::Identity(), {0.1, -0.02, 0.75});
     placed.covariance = Matrix6d(Matrix6d::Identity() * 1e-6);
     placed.seen = true;
-    placed.status = "placed";
+    placed.status = Sentence::saying("placed");
     BodyModule lost;
     lost.id = ModuleId{18};
     lost.type = "hex<script>";
-    lost.status = "no view shows it";
+    lost.status = Sentence::verbatim("no view shows it");
     body.modules = {placed, lost};
     body.quality.modulesPlaced = 1;
     body.quality.modulesTotal = 2;
-    body.quality.warnings = {"the body shook in pose 3 & more"};
+    body.quality.warnings = {Sentence::verbatim("the body shook in pose 3 & more")};
     body.quality.trust = Trust::Usable;
     return body;
 }
@@ -53,7 +53,7 @@ TEST(Report, ListsAllThatIsMissingAndPraisesOnlyWhereNothingIs) {
     const std::string html = reportHtml(body, {"now", {"patch 2 is seen in one view only"}}).toStdString();
     EXPECT_THAT(html, HasSubstr("patch 2 is seen in one view only"));
     EXPECT_THAT(html, Not(HasSubstr(praise)));
-    body.quality.missing = {"no view shows module 18"};
+    body.quality.missing = {Sentence::verbatim("no view shows module 18")};
     EXPECT_THAT(reportHtml(body, {"now"}).toStdString(),
                 testing::AllOf(HasSubstr("no view shows module 18"), Not(HasSubstr(praise))));
 }
@@ -71,7 +71,7 @@ TEST(Report, TellsHowWellModulesAndPatchesAreKnown) {
     BodyPatch patch;
     patch.id = PatchId{0};
     patch.origin = ModuleId{17};
-    patch.status = "placed";
+    patch.status = Sentence::saying("placed");
     body.patches = {patch};
     Vector6d variances;
     // 0.5 degrees and 2 mm per axis.
@@ -140,7 +140,7 @@ TEST(Report, ShowsWhatDecidedAndWhoDecidedOtherwise) {
     BodyObservation aside = used;
     aside.module = ModuleId{19};
     aside.verdict = ObservationVerdict::Rejected;
-    aside.reason = "9 px from where the body has it";
+    aside.reason = Sentence::verbatim("9 px from where the body has it");
     view.observations = {used, aside};
     body.views = {view};
     const std::string html = reportHtml(body, factsWithData(3)).toStdString();

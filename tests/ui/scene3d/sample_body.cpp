@@ -27,7 +27,7 @@ BodyModule moduleAt(std::uint32_t id, std::uint32_t patch, const Isometry3d& T_o
     Vector6d variances;
     variances << 1e-6, 1e-6, 1e-6, sigma * sigma, sigma * sigma, 9 * sigma * sigma;
     module.covariance = variances.asDiagonal();
-    module.status = "placed";
+    module.status = Sentence::saying("placed");
     module.seen = true;
     return module;
 }
@@ -38,7 +38,7 @@ BodyModel sampleBody() {
     BodyModel body;
     body.templates.push_back(paperHexagon());
     const Isometry3d T_r_flat = makeIsometry(so3Exp(Vector3d(0, 0, 0.1)), Vector3d(-0.05, 0, 0));
-    BodyPatch flat{PatchId(0), ModuleId(1), {}, T_r_flat, {"front", "left"}, "placed"};
+    BodyPatch flat{PatchId(0), ModuleId(1), {}, T_r_flat, {"front", "left"}, Sentence::saying("placed")};
     for (std::uint32_t k = 0; k < 7; ++k) {
         const double angle = (60.0 * k + 30) * kDegree;
         const Vector3d place =
@@ -50,7 +50,7 @@ BodyModel sampleBody() {
 
     constexpr double kRadius = 0.05;
     const Isometry3d T_r_strip = makeIsometry(so3Exp(Vector3d(0, 0.3, 0)), Vector3d(0.07, 0.01, 0));
-    BodyPatch strip{PatchId(1), ModuleId(11), {}, T_r_strip, {"left"}, "placed"};
+    BodyPatch strip{PatchId(1), ModuleId(11), {}, T_r_strip, {"left"}, Sentence::saying("placed")};
     for (std::uint32_t k = 0; k < 6; ++k) {
         const double angle = (k - 2.5) * kPitch / kRadius;
         const Matrix3d R = so3Exp(Vector3d(-angle, 0, 0));
@@ -60,8 +60,8 @@ BodyModel sampleBody() {
     }
     body.patches.push_back(strip);
 
-    BodyView front{"front", cameraAt({0, 0, 0.5}, {0, 0, 0}, {0, 1, 0}), 0.1, {}, "placed"};
-    BodyView left{"left", cameraAt({-0.3, 0.1, 0.4}, {0, 0, 0}, {0, 1, 0}), 0.1, {}, "placed"};
+    BodyView front{"front", cameraAt({0, 0, 0.5}, {0, 0, 0}, {0, 1, 0}), 0.1, {}, Sentence::saying("placed")};
+    BodyView left{"left", cameraAt({-0.3, 0.1, 0.4}, {0, 0, 0}, {0, 1, 0}), 0.1, {}, Sentence::saying("placed")};
     for (const BodyModule& module : body.modules) {
         BodyObservation observation;
         observation.module = module.id;
@@ -96,7 +96,7 @@ BodyModel sheetOf(std::size_t modules) {
     BodyModel body;
     body.templates.push_back(paperHexagon());
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(modules))));
-    BodyPatch patch{PatchId(0), ModuleId(1), {}, Isometry3d::Identity(), {}, "placed"};
+    BodyPatch patch{PatchId(0), ModuleId(1), {}, Isometry3d::Identity(), {}, Sentence::saying("placed")};
     for (std::size_t i = 0; i < modules; ++i) {
         const std::size_t row = i / columns;
         const Vector3d place(kPitch * (static_cast<double>(i % columns) + (row % 2 == 0 ? 0 : 0.5)),

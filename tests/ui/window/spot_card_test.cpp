@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QCheckBox>
+#include <QComboBox>
 #include <QLabel>
 #include <QTableView>
 
@@ -27,22 +28,27 @@ TEST(SpotCard, ShowsWhereAModuleShouldBeThatWasNotFound) {
         }
     }
     auto* table = driven.find<QTableView>("detections");
+    auto* views = driven.find<QComboBox>("views");
     const int all = table->model()->rowCount();
     QTest::mouseClick(driven.find<QCheckBox>("needsALook"), Qt::LeftButton, {}, QPoint(8, 8));
     ASSERT_LT(table->model()->rowCount(), all);
     const auto* evidence = driven.find<QLabel>("evidence");
     const auto* fit = driven.find<SpotCrop>("crop4");
+    // Where the camera went depends on advice that comes when it comes: any of the views will do.
     int predicted = 0;
-    for (int row = 0; row < table->model()->rowCount(); ++row) {
-        const QModelIndex index = table->model()->index(row, 0);
-        table->scrollTo(index);
-        QTest::mouseClick(table->viewport(), Qt::LeftButton, {}, table->visualRect(index).center());
-        EXPECT_TRUE(evidence->text().contains(index.data().toString()));
-        const bool isFound = !fit->isEmpty() && fit->marks().centre;
-        if (!isFound && evidence->text().contains("The body has it at") && !fit->isEmpty()) {
-            EXPECT_TRUE(fit->marks().predicted);
-            if (predicted++ == 0)
-                driven.takePicture(QStringLiteral("scan-needs-a-look"));
+    for (int view = views->count() - 1; view > 0 && predicted == 0; --view) {
+        views->setCurrentIndex(view);
+        for (int row = 0; row < table->model()->rowCount(); ++row) {
+            const QModelIndex index = table->model()->index(row, 0);
+            table->scrollTo(index);
+            QTest::mouseClick(table->viewport(), Qt::LeftButton, {}, table->visualRect(index).center());
+            EXPECT_TRUE(evidence->text().contains(index.data().toString()));
+            const bool isFound = !fit->isEmpty() && fit->marks().centre;
+            if (!isFound && evidence->text().contains("The body has it at") && !fit->isEmpty()) {
+                EXPECT_TRUE(fit->marks().predicted);
+                if (predicted++ == 0)
+                    driven.takePicture(QStringLiteral("scan-needs-a-look"));
+            }
         }
     }
     EXPECT_GT(predicted, 0);

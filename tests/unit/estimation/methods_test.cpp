@@ -153,7 +153,7 @@ TEST_P(AllMethods, ContradictoryLinksAndCablesAreSortedOut) {
     EXPECT_EQ(body.patches.size(), 2U);
     EXPECT_EQ(body.links.front().kind, LinkKind::Cable);
     EXPECT_EQ(body.links.back().kind, LinkKind::Cable);
-    EXPECT_THAT(body.links.back().reason, testing::Not(IsEmpty()));
+    EXPECT_FALSE(body.links.back().reason.empty());
     EXPECT_GT(body.links.back().distance.value(), 0.02);
     EXPECT_EQ(body.links[1].kind, LinkKind::Adjacent);
     EXPECT_LT(compareToTruth(body, world).positionMax, 1e-4);
@@ -168,7 +168,7 @@ TEST_P(AllMethods, StopWhenCancelledAtAnyMoment) {
         int calls = 0;
         double last = 0;
         context.isCancelled = [&] { return ++calls > limit; };
-        context.report = [&](std::string_view stage, double done) {
+        context.report = [&](const Sentence& stage, double done) {
             EXPECT_FALSE(stage.empty());
             EXPECT_GE(done, 0);
             EXPECT_LE(done, 1);
@@ -193,8 +193,8 @@ TEST_P(AllMethods, ReportWhatBecameOfEveryDetection) {
     const ModuleId doubtful = view.found[0].module;
     view.found.pop_back();
     view.found.erase(view.found.begin());
-    view.undetected = {{hidden, DetectionVerdict::NotFound, "no spot above the noise"},
-                       {doubtful, DetectionVerdict::Ambiguous, "two spots blink its word"}};
+    view.undetected = {{hidden, DetectionVerdict::NotFound, Sentence::verbatim("no spot above the noise")},
+                       {doubtful, DetectionVerdict::Ambiguous, Sentence::verbatim("two spots blink its word")}};
     view.found.push_back({ModuleId(9999), {10, 10}, 0.1});
     const std::size_t known = view.found.size() - 1;
     const BodyModel body = calibrate(GetParam(), world.measurements).value();
@@ -238,7 +238,7 @@ TEST(PaperMethod, NamesItsOutliers) {
         const auto found = std::find_if(list.begin(), list.end(), [&](const auto& o) { return o.module == id; });
         ASSERT_NE(found, list.end());
         EXPECT_EQ(found->verdict, ObservationVerdict::Rejected);
-        EXPECT_THAT(found->reason, testing::Not(IsEmpty()));
+        EXPECT_FALSE(found->reason.empty());
     }
 }
 
@@ -247,8 +247,8 @@ TEST_P(OurMethods, WhatWasSeenFromOneSideIsUsableAtMost) {
     SyntheticWorld world = makeWorld(random, bentPatches());
     const auto oneSided = [&] {
         const BodyModel body = calibrate(GetParam(), world.measurements).value();
-        const auto isSaid = [](const std::string& warning) {
-            return warning.find("add a view from 30°") < warning.size();
+        const auto isSaid = [](const Sentence& warning) {
+            return warning.english().find("add a view from 30°") != std::string::npos;
         };
         const auto& warnings = body.quality.warnings;
         const bool said = std::any_of(warnings.begin(), warnings.end(), isSaid);

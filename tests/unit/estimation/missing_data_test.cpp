@@ -16,7 +16,7 @@ class WhyNotPlacedTest : public testing::Test {
         patch_.modules = {0, 1, 2, 3, 4};
     }
     std::string text(const PatchEvidence& evidence, bool anyPlaced = true) const {
-        return whyNotPlaced(skin_, patch_, evidence, 4, anyPlaced);
+        return whyNotPlaced(skin_, patch_, evidence, 4, anyPlaced).english();
     }
     Skin skin_;
     Patch patch_;
@@ -64,7 +64,7 @@ TEST(WhyNotHeld, NamesAHandfulOfModules) {
         all.push_back(m);
     }
     EXPECT_EQ(whyNotHeld(skin, {}), "");
-    EXPECT_THAT(whyNotHeld(skin, {0, 2}), StartsWith("modules 20, 22: no gravity readings"));
+    EXPECT_THAT(whyNotHeld(skin, {0, 2}).english(), StartsWith("modules 20 and 22: no gravity readings"));
     EXPECT_THAT(whyNotHeld(skin, all), HasSubstr("27 and 3 more: "));
 }
 

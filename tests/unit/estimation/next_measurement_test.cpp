@@ -171,7 +171,8 @@ TEST(NextView, WordsLeadThereFromWhereTheCameraStood) {
         const auto ranked = rankNextViews(solved.solution);
         ASSERT_TRUE(ranked && !ranked->empty());
         for (const NextView& view : *ranked) {
-            const std::string way = view.words.substr(view.words.find(": "));
+            const std::string words = view.words.english();
+            const std::string way = words.substr(words.find(": "));
             std::size_t from = 0;
             while (!way.ends_with(solved.solution.measurements->views[from].name + " was"))
                 ASSERT_LT(++from, basis.state.T_r_v.size()) << view.words;

@@ -23,7 +23,7 @@ const Shortfall* find(const std::vector<Shortfall>& shortfalls, Kind kind) {
 std::string texts(const std::vector<Shortfall>& shortfalls) {
     std::string all;
     for (const Shortfall& s : shortfalls)
-        all += std::string(name(s.kind)) + ": " + s.text + "\n";
+        all += std::string(name(s.kind)) + ": " + s.text.english() + "\n";
     return all;
 }
 

@@ -27,7 +27,7 @@ Ambiguity doubt(Measurements& measurements, std::size_t view, std::size_t at, co
     auto& found = measurements.views[view].found;
     const LedDetection detection = found[at];
     found.erase(found.begin() + static_cast<std::ptrdiff_t>(at));
-    Undetected undetected{detection.module, DetectionVerdict::Ambiguous, "spots blink its word"};
+    Undetected undetected{detection.module, DetectionVerdict::Ambiguous, Sentence::verbatim("spots blink its word")};
     for (const Vector2d& other : others)
         undetected.spots.push_back({other, detection.sigma_px, 1});
     if (isLedSeen)
@@ -271,7 +271,7 @@ TEST(SpotSettlement, NoneIsTakenWhereNoneFits) {
     const BodyModel body = describeSolution(one.solved.solution, {});
     const auto& observations = body.views[1].observations;
     EXPECT_TRUE(std::any_of(observations.begin(), observations.end(), [](const BodyObservation& o) {
-        return o.verdict == ObservationVerdict::Ambiguous && o.reason.find("none lies") != std::string::npos;
+        return o.verdict == ObservationVerdict::Ambiguous && o.reason.english().find("none lies") != std::string::npos;
     }));
 }
 

@@ -69,7 +69,7 @@ TEST(BodyJson, EveryKindOfFindingHasAWordOfItsOwn) {
     std::set<std::string> words;
     for (const Finding::Kind kind : kFindingKinds) {
         BodyModel body = test::randomBody(1);
-        body.quality.findings = {{kind, {}, {}, {}, "what"}};
+        body.quality.findings = {{kind, {}, {}, {}, Sentence::verbatim("what")}};
         const auto back = parseBodyJson(bodyToJson(body), "a");
         ASSERT_TRUE(back) << back.error().message();
         EXPECT_EQ(back->quality.findings.at(0).kind, kind);

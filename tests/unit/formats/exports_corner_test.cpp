@@ -77,7 +77,7 @@ TEST(ExportCsv, TextsCannotBreakTheTable) {
     BodyModel body = oneModule(Isometry3d::Identity());
     body.modules[0].T_body_module.reset();
     body.modules[0].type = "a,b\"c";
-    body.modules[0].status = "d\r\ne,f";
+    body.modules[0].status = Sentence::verbatim("d\r\ne,f");
     EXPECT_THAT(exportCsv(body), testing::EndsWith("\n1,a;b;c,,d;;e;f,,,,,,,\n"));
 }
 

@@ -18,7 +18,7 @@ inline BodyModel randomBody(std::uint64_t seed) {
         m.id = ModuleId(10 + i);
         m.type = i % 2 == 0 ? "hex" : "triangle";
         m.patch = PatchId(i / 4);
-        m.status = i == 5 ? "not seen, \"hidden\" & <lost>" : "placed";
+        m.status = i == 5 ? Sentence::verbatim("not seen, \"hidden\" & <lost>") : Sentence::saying("placed");
         m.T_patch_module = pose();
         if (i != 5)
             m.T_body_module = pose();
@@ -31,14 +31,22 @@ inline BodyModel randomBody(std::uint64_t seed) {
         m.seen = i == 0;  // as the view's observations below
         body.modules.push_back(m);
     }
-    body.patches.push_back({PatchId(0), ModuleId(10), {ModuleId(10), ModuleId(11)}, pose(), {"view0"}, "placed"});
     body.patches.push_back(
-        {PatchId(1), ModuleId(14), {ModuleId(14)}, std::nullopt, {}, "not seen with a placed patch"});
-    body.links.push_back({{ModuleId(10), 0, ModuleId(11), 1, std::nullopt}, LinkKind::Adjacent, "fits", 0.001});
-    body.links.push_back({{ModuleId(11), 2, ModuleId(12), 3, std::nullopt}, LinkKind::Cable, "twist", std::nullopt});
-    BodyView view{"view0", pose(), 0.25, {}, "placed"};
-    view.observations.push_back({ModuleId(10), Vector2d(1, 2), Vector2d(0.1, -0.1), ObservationVerdict::Used, ""});
-    view.observations.push_back({ModuleId(11), std::nullopt, std::nullopt, ObservationVerdict::Ambiguous, "two spots"});
+        {PatchId(0), ModuleId(10), {ModuleId(10), ModuleId(11)}, pose(), {"view0"}, Sentence::saying("placed")});
+    body.patches.push_back({PatchId(1),
+                            ModuleId(14),
+                            {ModuleId(14)},
+                            std::nullopt,
+                            {},
+                            Sentence::verbatim("not seen with a placed patch")});
+    body.links.push_back(
+        {{ModuleId(10), 0, ModuleId(11), 1, std::nullopt}, LinkKind::Adjacent, Sentence::verbatim("fits"), 0.001});
+    body.links.push_back(
+        {{ModuleId(11), 2, ModuleId(12), 3, std::nullopt}, LinkKind::Cable, Sentence::verbatim("twist"), std::nullopt});
+    BodyView view{"view0", pose(), 0.25, {}, Sentence::saying("placed")};
+    view.observations.push_back({ModuleId(10), Vector2d(1, 2), Vector2d(0.1, -0.1), ObservationVerdict::Used, {}});
+    view.observations.push_back(
+        {ModuleId(11), std::nullopt, std::nullopt, ObservationVerdict::Ambiguous, Sentence::verbatim("two spots")});
     body.views.push_back(view);
     BodyQuality& quality = body.quality;
     quality.modulesPlaced = 5;
@@ -48,11 +56,12 @@ inline BodyModel randomBody(std::uint64_t seed) {
     quality.link_mismatch_max = 0.002;
     quality.gravity_residual_rms = 0.03;
     quality.condition = {{"pixel noise factor", 1.5}};
-    quality.warnings = {"a warning"};
-    quality.missing = {"a view"};
-    quality.findings = {{Finding::Kind::WrongLink, {ModuleId(10), ModuleId(11)}, {}, {}, "ports that do not meet"},
-                        {Finding::Kind::BumpedView, {ModuleId(10)}, "view0", {}, "by 3 mm"},
-                        {Finding::Kind::ShakenPose, {}, {}, 7, "it did not rest"}};
+    quality.warnings = {Sentence::verbatim("a warning")};
+    quality.missing = {Sentence::verbatim("a view")};
+    quality.findings = {
+        {Finding::Kind::WrongLink, {ModuleId(10), ModuleId(11)}, {}, {}, Sentence::verbatim("ports that do not meet")},
+        {Finding::Kind::BumpedView, {ModuleId(10)}, "view0", {}, Sentence::verbatim("by 3 mm")},
+        {Finding::Kind::ShakenPose, {}, {}, 7, Sentence::verbatim("it did not rest")}};
     quality.stages = {{"initial estimate", random.uniform(0, 1), 0}, {"joint adjustment", random.uniform(0, 1), 12}};
     quality.trust = Trust::Usable;
     return body;

@@ -9,17 +9,17 @@ namespace skincal {
 namespace {
 
 TEST(Error, EveryCodeHasItsOwnName) {
-    std::set<std::string_view> names;
+    std::set<std::string> names;
     const int last = static_cast<int>(ErrorCode::NoDisplay);
     for (int code = 0; code <= last; ++code) {
-        const std::string_view text = name(static_cast<ErrorCode>(code));
+        const std::string text = sentenceOf(static_cast<ErrorCode>(code)).english();
         EXPECT_FALSE(text.empty()) << code;
         EXPECT_TRUE(names.insert(text).second) << text;
     }
 }
 
 TEST(Error, UnknownCodeIsABrokenContract) {
-    EXPECT_THROW((void)name(static_cast<ErrorCode>(1000)), std::logic_error);
+    EXPECT_THROW((void)sentenceOf(static_cast<ErrorCode>(1000)), std::logic_error);
 }
 
 TEST(Error, DegeneratePointsSaysWhatIsTrueOfEveryUse) {

@@ -30,7 +30,7 @@ TEST(Ids, ServeAsKeys) {
 TEST(RunContext, RunsToTheEndByDefault) {
     const RunContext context;
     EXPECT_FALSE(context.isCancelled());
-    EXPECT_NO_THROW(context.report("anything", 0.5));
+    EXPECT_NO_THROW(context.report(Sentence::saying("anything"), 0.5));
 }
 
 }  // namespace

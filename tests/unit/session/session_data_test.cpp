@@ -155,7 +155,7 @@ TEST(SessionData, SeveralSpotsOfARejectedModuleAreNoChoice) {
     ScannedView& view = measured.views.front();
     const LedDetection first = view.decoded.found.front();
     view.decoded.found.erase(view.decoded.found.begin());
-    Undetected several{first.module, DetectionVerdict::Ambiguous, "two spots blink its word"};
+    Undetected several{first.module, DetectionVerdict::Ambiguous, Sentence::verbatim("two spots blink its word")};
     several.spots = {{first.pixel, first.sigma_px, 1}, {first.pixel + Vector2d(50, 0), first.sigma_px, 0.8}};
     view.decoded.undetected = {several};
     const ViewDetections before = measurementsOf(measured, decisions).views.front();

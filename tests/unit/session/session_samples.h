@@ -68,7 +68,7 @@ class Text {
         *this << "\nview" << view.name << view.found;
         std::vector<std::string> undetected;  // their order means nothing
         for (const Undetected& u : view.undetected)
-            undetected.push_back(std::to_string(u.module.value) + ' ' + u.reason);
+            undetected.push_back(std::to_string(u.module.value) + ' ' + u.reason.english());
         std::sort(undetected.begin(), undetected.end());
         for (const std::string& u : undetected)
             *this << "\nundetected" << u;

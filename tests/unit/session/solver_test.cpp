@@ -169,7 +169,7 @@ TEST(Solver, SaysWhyThereIsNoBody) {
         reading.acceleration = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
     Session session;
     session.load(recording);
-    ASSERT_TRUE(waitFor([&] { return !session.failure().isEmpty() || isSolved(session); }));
+    ASSERT_TRUE(waitFor([&] { return !session.failure().empty() || isSolved(session); }));
     ASSERT_TRUE(waitFor([&] { return !session.isSolving(); }));
 }
 
@@ -184,13 +184,13 @@ TEST(Solver, ABodyIsStaleWhileNewerDataGiveNone) {
         reading.acceleration = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
     const int pose = session.addPose(broken);
     EXPECT_TRUE(session.isStale()) << "nothing has been computed yet";
-    ASSERT_TRUE(waitFor([&] { return !session.failure().isEmpty(); }));
+    ASSERT_TRUE(waitFor([&] { return !session.failure().empty(); }));
     ASSERT_TRUE(waitFor([&] { return !session.isSolving(); }));
     EXPECT_TRUE(session.isStale()) << "though nothing is being computed";
     EXPECT_EQ(session.solution(), body);
     session.decide("drop", [&](Decisions& decisions) { decisions.droppedPoses.insert(pose); });
     ASSERT_TRUE(waitFor([&] { return !session.isStale(); }));
-    EXPECT_TRUE(session.failure().isEmpty());
+    EXPECT_TRUE(session.failure().empty());
 }
 
 }  // namespace

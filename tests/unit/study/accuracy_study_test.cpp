@@ -51,7 +51,7 @@ TEST(AccuracyStudy, AWorldDoesNotDependOnThoseBefore) {
 TEST(AccuracyStudy, CancelledItKeepsTheWorldsThatAreDone) {
     int reports = 0;
     RunContext context;
-    context.report = [&](std::string_view, double done) {
+    context.report = [&](const Sentence&, double done) {
         ++reports;
         EXPECT_GE(done, 0);
         EXPECT_LT(done, 1);

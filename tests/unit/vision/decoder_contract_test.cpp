@@ -121,7 +121,7 @@ TEST(Decoder, ProgressRunsFromZeroToOne) {
     const ScanPainter scan = smallScan();
     double last = 0;
     RunContext context;
-    context.report = [&](std::string_view, double done) {
+    context.report = [&](const Sentence&, double done) {
         EXPECT_GE(done, last);
         EXPECT_LE(done, 1);
         last = done;

@@ -57,7 +57,7 @@ LedDetection at(std::uint32_t module, double x, double y) {
 }
 
 Undetected missing(std::uint32_t module, Cause cause = Cause::OutOfSight) {
-    return {ModuleId{module}, DetectionVerdict::NotFound, "before", {}, cause};
+    return {ModuleId{module}, DetectionVerdict::NotFound, Sentence::verbatim("before"), {}, cause};
 }
 
 TEST(Looks, AFurtherOneAddsWhatItFoundInThePixelsOfTheFirst) {
@@ -71,7 +71,7 @@ TEST(Looks, AFurtherOneAddsWhatItFoundInThePixelsOfTheFirst) {
     further.readings.resize(4);
     further.readings[3].sent = "0110";
     further.undetected = {missing(4, Cause::TooWeak), missing(6)};
-    further.undetected[0].reason = "now";
+    further.undetected[0].reason = Sentence::verbatim("now");
     further.unexplained = 2;
     EXPECT_TRUE(addLook(view, further));
     sortAs(numbered(6), view);

@@ -231,7 +231,7 @@ TEST(SpotFit, MisuseThrows) {
 TEST(SpotFit, EveryErrorHasAName) {
     for (const SpotFitError error :
          {SpotFitError::TooFewPixels, SpotFitError::NoLight, SpotFitError::WrongShape, SpotFitError::OutsideWindow})
-        EXPECT_FALSE(name(error).empty());
+        EXPECT_FALSE(sentenceOf(error).empty());
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ class FrameSource : public QObject {
   signals:
     void frameArrived(const skincal::CameraFrame& frame);
     void stopped();
-    /// Short English; failure() has the code.
+    /// A short sentence in the language of the program; failure() has the code.
     void failed(const QString& why);
     /// Formats, exposure or controls are other than before.
     void abilitiesChanged();

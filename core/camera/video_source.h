@@ -61,7 +61,7 @@ class VideoSource : public FrameSource {
     std::optional<CameraFailure> failure_;
 };
 
-/// Short English for a trouble.
+/// A short sentence for a trouble, in the language of the program.
 [[nodiscard]] QString shortReason(const CameraFailure& failure);
 
 }  // namespace skincal

@@ -143,6 +143,13 @@ void BoardCollector::remove(std::size_t i) {
     placements_.erase(placements_.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
+void BoardCollector::takeBack(const BoardView& view) {
+    if (!views_.empty() && views_.front().size != view.size)
+        return;
+    views_.push_back(view);
+    placements_.push_back(placementOf(view, plan_));
+}
+
 std::vector<int> BoardCollector::coverage() const {
     std::vector<int> cells(static_cast<std::size_t>(options_.gridColumns * options_.gridRows), 0);
     for (const BoardView& view : views_) {

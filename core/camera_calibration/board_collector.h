@@ -80,6 +80,8 @@ class BoardCollector {
     OfferOutcome offer(const BoardView& view);
     /// Takes the i-th view out again, for the operator.
     void remove(std::size_t i);
+    /// Adds a view that was kept before, whatever it adds to those there are. Nothing where they are of another size.
+    void takeBack(const BoardView& view);
 
     [[nodiscard]] const BoardPlan& plan() const { return plan_; }
     [[nodiscard]] const std::vector<BoardView>& views() const { return views_; }

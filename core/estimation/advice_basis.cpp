@@ -13,7 +13,7 @@ namespace {
 /// Fewer LEDs than this leave a view's pose open, or tell nothing else.
 constexpr std::size_t kLedsOfAView = 4;
 
-/// Towards the axes of a camera, in pairs +x -x, +y -y, +z -z.
+/// The side of the picture, or of the camera, that v points to along an axis: numbers of +x -x, +y -y, +z -z.
 std::size_t sideOf(const Vector3d& v, Eigen::Index axis) {
     return static_cast<std::size_t>(2 * axis + (v[axis] < 0 ? 1 : 0));
 }

@@ -5,6 +5,7 @@
 
 #include "core/adjustment/body_precision.h"
 #include "core/estimation/body_solution.h"
+#include "core/geometry/sentence.h"
 
 namespace skincal {
 

@@ -34,4 +34,15 @@ std::string_view name(Trust trust) {
     }
 }
 
+Sentence sentenceOf(Trust trust) {
+    switch (trust) {
+        case Trust::Good:
+            return Sentence::saying("good");
+        case Trust::Usable:
+            return Sentence::saying("usable");
+        default:
+            return Sentence::saying("not to be trusted");
+    }
+}
+
 }  // namespace skincal

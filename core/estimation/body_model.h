@@ -101,6 +101,7 @@ enum class Trust { Good, Usable, NotToBeTrusted };
 
 /// "good", "usable" or "not to be trusted", in files as in print.
 [[nodiscard]] std::string_view name(Trust trust);
+[[nodiscard]] Sentence sentenceOf(Trust trust);
 
 /// The figures a person needs to trust or refuse the result.
 struct BodyQuality {

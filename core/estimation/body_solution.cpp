@@ -132,7 +132,7 @@ void placePatchFrames(BodySolution& solution, const BodyState& state) {
         solution.estimate.T_r_o[k] = state.T_r_u[patch.origin];
         const bool anyPlaced = std::any_of(patch.modules.begin(), patch.modules.end(),
                                            [&](std::size_t u) { return state.T_r_u[u].has_value(); });
-        if (!anyPlaced && solution.estimate.patchStatus[k] == "placed")
+        if (!anyPlaced && solution.body.T_r_o[k])
             solution.estimate.patchStatus[k] = Sentence::saying("none of its modules is placed");
         if (!solution.estimate.T_r_o[k])
             continue;

@@ -73,13 +73,17 @@ Shortfall missing(const std::vector<std::size_t>& modules, const BodySolution& s
     Shortfall shortfall{Shortfall::Kind::GravityMissing};
     name(shortfall, modules, solution);
     const bool all = modules.size() == solution.layout.patchOf.size();
-    const Sentence who = all                   ? Sentence::saying("no module has")
-                         : modules.size() == 1 ? Sentence::saying("{} has no", listed(shortfall.modules))
-                                               : Sentence::saying("{} have no", listed(shortfall.modules));
-    shortfall.text = Sentence::saying(
-        "{} gravity readings in two poses or more, which tell how modules are turned: read the accelerometers in three "
-        "poses at least, better six, each with another side up",
-        who);
+    const Sentence advice =
+        Sentence::saying("read the accelerometers in three poses at least, better six, each with another side up");
+    shortfall.text =
+        all ? Sentence::saying(
+                  "no module has gravity readings in two poses or more, which tell how modules are turned: {}", advice)
+        : modules.size() == 1
+            ? Sentence::saying("{} has no gravity readings in two poses or more, which tell how modules are turned: {}",
+                               listed(shortfall.modules), advice)
+            : Sentence::saying(
+                  "{} have no gravity readings in two poses or more, which tell how modules are turned: {}",
+                  listed(shortfall.modules), advice);
     return shortfall;
 }
 

@@ -1,7 +1,5 @@
 #include "core/estimation/joint_method.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <stdexcept>
 

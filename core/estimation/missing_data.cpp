@@ -100,6 +100,12 @@ Sentence whyNotHeld(const Skin& skin, const std::vector<std::size_t>& modules) {
     std::vector<ModuleId> ids;
     for (const std::size_t u : modules)
         ids.push_back(skin.modules[u].id);
+    if (ids.size() == 1)
+        return Sentence::saying(
+            "{}: no gravity readings tell how it lies, and links and pictures do not hold it: read its accelerometer "
+            "in "
+            "two poses or more that tilt the body differently",
+            listed(ids));
     return Sentence::saying(
         "{}: no gravity readings tell how they lie, and links and pictures do not hold them: read their "
         "accelerometers in two poses or more that tilt the body differently",

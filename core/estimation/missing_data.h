@@ -1,12 +1,12 @@
 #pragma once
 
 #include <map>
-#include <string>
 #include <vector>
 
 #include "core/adjustment/body_adjustment.h"
 #include "core/estimation/patch_shape.h"
 #include "core/estimation/skin_layout.h"
+#include "core/geometry/sentence.h"
 
 namespace skincal {
 

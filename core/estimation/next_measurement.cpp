@@ -91,8 +91,8 @@ Sentence inWords(const Vector3d& way_cm, Eigen::Index axis) {
 
 /// What a view looks at, and, for a person behind the camera, which way to carry it from where it stood, in that
 /// picture's directions.
-Sentence awayFromViews(const BodySolution& solution, const AdviceBasis& basis, const Sentence& words,
-                       const Vector3d& place) {
+Sentence whereToStand(const BodySolution& solution, const AdviceBasis& basis, const Sentence& words,
+                      const Vector3d& place) {
     std::optional<std::size_t> nearest;
     const auto distance = [&](std::size_t v) { return (basis.state.T_r_v[v]->translation() - place).norm(); };
     for (std::size_t v = 0; v < basis.state.T_r_v.size(); ++v) {
@@ -252,7 +252,7 @@ tl::expected<std::vector<NextView>, CalibrationError> rankNextViews(const BodySo
             return tl::unexpected(after.error());
         ranked.push_back({seen.candidate.T_r_v, seen.candidate.patches, std::move(firstSeen),
                           gainOf(ground->before, *after, seen.leds),
-                          awayFromViews(solution, basis, seen.candidate.words, seen.candidate.T_r_v.translation())});
+                          whereToStand(solution, basis, seen.candidate.words, seen.candidate.T_r_v.translation())});
     }
     sortByGain(ranked);
     return ranked;

@@ -107,6 +107,8 @@ void findUndecidedViews(ShortfallSearch& search) {
         const Sentence which =
             areUsed
                 ? Sentence::saying("{} could be in two places, the likelier was taken", listedViews(shortfall.views))
+            : views.size() == 1
+                ? Sentence::saying("{} could be in two places and does not count", listedViews(shortfall.views))
                 : Sentence::saying("{} could be in two places and do not count", listedViews(shortfall.views));
         shortfall.text =
             shortfall.patches.size() == 1

@@ -1,7 +1,5 @@
 #include "core/estimation/sturdy_method.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <stdexcept>
 

@@ -199,8 +199,7 @@ void takeOutLink(BodySolution& solution, std::size_t l, double disagreement, Sol
     finding.kind = Finding::Kind::WrongLink;
     finding.modules = {skin.modules[link.a].id, skin.modules[link.b].id};
     if (const auto meet = portsThatMeet(solution, link, options.portsMeet)) {
-        finding.text = Sentence::saying("{} is reported wrongly: ports {} and {} meet there, these are {:.1f} mm apart",
-                                        reported, meet->first, meet->second, gap);
+        finding.text = reportedWrongly(solution, link, *meet);
     } else if (gap > options.farApart * 1e3 && !link.decided) {
         finding.text = Sentence::saying("{} is a cable: everything else has its ports {:.1f} mm apart", reported, gap);
         history.refuted.resize(solution.layout.verdicts.size());

@@ -7,6 +7,12 @@ Sentence inWords(const Skin& skin, const GraphLink& link) {
                             link.a_port, skin.modules[link.b].id.value, link.b_port);
 }
 
+Sentence reportedWrongly(const BodySolution& solution, const GraphLink& link,
+                         const std::pair<std::size_t, std::size_t>& meet) {
+    return Sentence::saying("{} is reported wrongly: ports {} and {} meet there, these are {:.1f} mm apart",
+                            inWords(*solution.input.skin, link), meet.first, meet.second, gapOf(solution, link) * 1e3);
+}
+
 std::optional<std::pair<std::size_t, std::size_t>> portsThatMeet(const BodySolution& solution, const GraphLink& link,
                                                                  double limit) {
     const Skin& skin = *solution.input.skin;
@@ -49,8 +55,7 @@ void nameMisportedLinks(BodySolution& solution, double limit) {
         Finding finding;
         finding.kind = Finding::Kind::WrongLink;
         finding.modules = {skin.modules[link.a].id, skin.modules[link.b].id};
-        finding.text = Sentence::saying("{} is reported wrongly: ports {} and {} meet there, these are {:.1f} mm apart",
-                                        inWords(skin, link), meet->first, meet->second, gapOf(solution, link) * 1e3);
+        finding.text = reportedWrongly(solution, link, *meet);
         estimate.linkTrouble[l] = finding.text;
         estimate.findings.push_back(std::move(finding));
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "core/estimation/body_solution.h"
@@ -10,6 +9,10 @@ namespace skincal {
 
 /// "the link from module 3 port 1 to module 17 port 0"
 [[nodiscard]] Sentence inWords(const Skin& skin, const GraphLink& link);
+
+/// That other ports of its modules meet than those that a link was reported between.
+[[nodiscard]] Sentence reportedWrongly(const BodySolution& solution, const GraphLink& link,
+                                       const std::pair<std::size_t, std::size_t>& meet);
 
 /// Which ports of a link's modules come out nearest to each other, within `limit` (m).
 [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> portsThatMeet(const BodySolution& solution,

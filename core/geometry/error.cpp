@@ -47,6 +47,9 @@ Sentence inWords(const std::string& what, double number) {
         return Sentence::saying("inliers {:g}", number);
     if (what == "iterations")
         return Sentence::saying("iterations {:g}", number);
+    if (what == "pose")
+        return Sentence::saying("pose {:g}", number);
+    // Symbols, as of frames, are the same in all languages.
     return Sentence::verbatim(fmt::format("{} {:g}", what, number));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <functional>
 #include <iosfwd>
@@ -20,7 +20,8 @@ class Sentence {
   public:
     /// "module {}: its accelerometer is {:.0f} times as noisy as the others", checked at compile time. lupdate takes
     /// the pattern for translators wherever it reads `Sentence::saying("…"`. Text goes in as a variable, never as a
-    /// literal: in that place lupdate reads a comment for the translator.
+    /// literal: in that place lupdate reads a comment for the translator. What is counted has a pattern for one and
+    /// another for more, as English does; languages with more forms say the second.
     template <typename... Args>
     [[nodiscard]] static Sentence saying(fmt::format_string<Args...> pattern, Args&&... args);
 
@@ -31,10 +32,11 @@ class Sentence {
     void clear() { *this = Sentence(); }
 
     [[nodiscard]] std::string english() const;
+    /// For matchers of tests that look into a text.
     explicit operator std::string() const { return english(); }
 
-    /// What `translate` makes of each pattern, filled. A pattern that can't be filled, a slip of the translator's, is
-    /// said in English.
+    /// What `translate` makes of each pattern, filled. One that is empty or can't be filled, a slip of the
+    /// translator's, is said in English.
     using Translate = std::function<std::string(const char* pattern)>;
     [[nodiscard]] std::string said(const Translate& translate) const;
 
@@ -44,12 +46,12 @@ class Sentence {
     friend std::ostream& operator<<(std::ostream& out, const Sentence& sentence);
 
   private:
-    using Piece = std::variant<long long, double, std::string, Sentence>;
+    using Piece = std::variant<long long, unsigned long long, double, std::string, Sentence>;
 
     template <typename Value>
     [[nodiscard]] static Piece piece(Value&& value);
 
-    std::string pattern_;
+    std::string pattern_;  ///< "{}" where it is verbatim: there is nothing to translate
     std::vector<Piece> pieces_;
 };
 
@@ -59,7 +61,10 @@ class Sentence {
 template <typename Value>
 Sentence::Piece Sentence::piece(Value&& value) {
     using Plain = std::decay_t<Value>;
-    if constexpr (std::is_integral_v<Plain>)
+    static_assert(!std::is_same_v<Plain, bool> && !std::is_same_v<Plain, char>, "would be a number");
+    if constexpr (std::is_unsigned_v<Plain>)
+        return static_cast<unsigned long long>(value);
+    else if constexpr (std::is_integral_v<Plain>)
         return static_cast<long long>(value);
     else if constexpr (std::is_floating_point_v<Plain>)
         return static_cast<double>(value);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "core/geometry/sentence.h"
 #include "core/session/decision_change.h"
 #include "core/session/session_data.h"
 #include "core/session/solver.h"

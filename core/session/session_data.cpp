@@ -5,6 +5,8 @@
 #include <set>
 #include <tuple>
 
+#include "core/vision/verdicts.h"
+
 namespace skincal {
 namespace {
 
@@ -38,8 +40,7 @@ ViewDetections withoutRejected(ViewDetections view, const Decisions& decisions) 
         if (decision == decisions.detections.end() || decision->second.verdict != "rejected")
             return std::nullopt;
         const std::string& why = decision->second.reason;
-        return why.empty() ? Sentence::saying("rejected by the operator")
-                           : Sentence::saying("rejected by the operator: {}", why);
+        return rejectedByOperator(why);
     };
     for (Undetected& undetected : view.undetected) {
         const auto why = undetected.spots.empty() ? std::nullopt : whyRejected(undetected.module);

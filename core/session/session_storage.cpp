@@ -26,7 +26,7 @@ tl::expected<void, std::string> decodePictures(ScannedView& view, const std::fil
     const FrameLoader load = [&](std::size_t k) -> tl::expected<cv::Mat, std::string> { return (*pictures)[k]; };
     auto decoded = decodeView(view.name, modules, view.frames, load, {}, context);
     if (!decoded)
-        return tl::unexpected(decoded.error().cancelled ? std::string() : decoded.error().message);
+        return tl::unexpected(decoded.error().cancelled ? std::string() : decoded.error().message.english());
     view.decoded = *std::move(decoded);
     view.pictures = std::move(pictures);
     return {};

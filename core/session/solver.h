@@ -5,6 +5,7 @@
 #include <atomic>
 #include <memory>
 
+#include "core/geometry/sentence.h"
 #include "core/session/solution.h"
 
 namespace skincal {

@@ -1,7 +1,5 @@
 #include "core/study/accuracy_study.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <chrono>

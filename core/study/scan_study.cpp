@@ -312,7 +312,7 @@ ScanScore scoreScan(World world, const ScanCase& what, const RunContext& context
                     : what.method == ScanMethod::PaperSingle ? detectPaper("view", modules, frames, load, {}, context)
                                                              : decodeView("view", modules, frames, load, {}, context);
         if (!view && !view.error().cancelled)
-            throw std::logic_error("a scan of the study can't be decoded: " + view.error().message);
+            throw std::logic_error("a scan of the study can't be decoded: " + view.error().message.english());
         result.seconds = std::chrono::duration<double>(Clock::now() - start).count() - painting;
         return view;
     };

@@ -35,8 +35,10 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
                               : Sentence::saying("its LED was never dark, or only like a drift"));
         } else if (sharing[scan.codebook.representative[u]] > 1) {
             verdicts.note(u, DetectionVerdict::Ambiguous, Undetected::Cause::Alike,
-                          Sentence::saying("lit in the same frames as {} other modules",
-                                           sharing[scan.codebook.representative[u]] - 1));
+                          sharing[scan.codebook.representative[u]] == 2
+                              ? Sentence::saying("lit in the same frames as another module")
+                              : Sentence::saying("lit in the same frames as {} other modules",
+                                                 sharing[scan.codebook.representative[u]] - 1));
         } else if (spots.first != spots.second && spoilt) {
             verdicts.replace(u, {{},
                                  DetectionVerdict::NotFound,
@@ -109,7 +111,7 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
         scan.levelExposure(options.windowRadius);
         auto matched = matchCandidates(scan, candidates, modules, options.words, context, verdicts);
         if (!matched)
-            return tl::unexpected(ScanError{"cancelled", true});
+            return tl::unexpected(ScanError{Sentence::saying("cancelled"), true});
         matches = *std::move(matched);
         prepareMaps(scan, size, options, matches, motion);
     }
@@ -143,7 +145,7 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
             matches[i].fits.push_back(fitSpot(map.window(), options.fit));
     });
     if (!isFitted)
-        return tl::unexpected(ScanError{"cancelled", true});
+        return tl::unexpected(ScanError{Sentence::saying("cancelled"), true});
 
     std::optional<double> moved_px = motion.moved_px();
     // What moves leaves light that its word does not explain, about as much as the square of the way over that of a

@@ -4,17 +4,17 @@
 #include <opencv2/core/types.hpp>
 #include <span>
 #include <string>
-#include <string_view>
 #include <tl/expected.hpp>
 
 #include "core/geometry/run_context.h"
+#include "core/geometry/sentence.h"
 #include "core/vision/frame.h"
 #include "core/vision/frame_pixels.h"
 
 namespace skincal {
 
 struct ScanError {
-    std::string message;  ///< a sentence that names the file, from the loader
+    Sentence message;  ///< a sentence that names the file, from the loader
     bool cancelled = false;
 };
 

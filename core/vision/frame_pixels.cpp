@@ -6,17 +6,18 @@
 
 namespace skincal {
 
-tl::expected<FramePixels, std::string> FramePixels::make(cv::Mat picture, const std::string& file, cv::Size expected,
-                                                         bool coloured) {
+tl::expected<FramePixels, Sentence> FramePixels::make(cv::Mat picture, const std::string& file, cv::Size expected,
+                                                      bool coloured) {
     if (picture.empty())
-        return tl::unexpected(file + ": the picture is empty");
+        return tl::unexpected(Sentence::saying("{}: the picture is empty", file));
     if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3))
-        return tl::unexpected(file + ": expected an 8-bit grey or colour picture");
+        return tl::unexpected(Sentence::saying("{}: expected an 8-bit grey or colour picture", file));
     if (expected.area() > 0 && picture.size() != expected)
-        return tl::unexpected(fmt::format("{}: expected {} x {} pixels as in the view's other frames, found {} x {}",
-                                          file, expected.width, expected.height, picture.cols, picture.rows));
+        return tl::unexpected(
+            Sentence::saying("{}: expected {} x {} pixels as in the view's other frames, found {} x {}", file,
+                             expected.width, expected.height, picture.cols, picture.rows));
     if (coloured && picture.channels() != 3)
-        return tl::unexpected(file + ": a grey picture of LEDs that were lit in colours");
+        return tl::unexpected(Sentence::saying("{}: a grey picture of LEDs that were lit in colours", file));
     return FramePixels(std::move(picture));
 }
 

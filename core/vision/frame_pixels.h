@@ -6,6 +6,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "core/geometry/sentence.h"
+
 namespace skincal {
 
 /// A loaded frame, checked, with access to the pixels of its planes.
@@ -13,8 +15,8 @@ class FramePixels {
   public:
     /// Fails when the picture is empty, not 8-bit with 1 or 3 channels, of another size than `expected` (if that is not
     /// empty), or grey where colours were lit.
-    [[nodiscard]] static tl::expected<FramePixels, std::string> make(cv::Mat picture, const std::string& file,
-                                                                     cv::Size expected, bool coloured);
+    [[nodiscard]] static tl::expected<FramePixels, Sentence> make(cv::Mat picture, const std::string& file,
+                                                                  cv::Size expected, bool coloured);
 
     [[nodiscard]] cv::Size size() const { return picture_.size(); }
     [[nodiscard]] const cv::Mat& picture() const { return picture_; }

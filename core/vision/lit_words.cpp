@@ -1,12 +1,10 @@
 #include "core/vision/lit_words.h"
 
-#include <fmt/format.h>
-
 #include <unordered_map>
 
 namespace skincal {
 
-tl::expected<LitWords, std::string> litWords(std::span<const ModuleId> modules, std::span<const FrameInfo> frames) {
+tl::expected<LitWords, Sentence> litWords(std::span<const ModuleId> modules, std::span<const FrameInfo> frames) {
     std::unordered_map<ModuleId, std::size_t> index;
     for (std::size_t i = 0; i < modules.size(); ++i)
         index.emplace(modules[i], i);
@@ -18,8 +16,8 @@ tl::expected<LitWords, std::string> litWords(std::span<const ModuleId> modules, 
                 continue;
             for (const int level : *lit.colour) {
                 if (level != 0 && level != 1)
-                    return tl::unexpected(fmt::format("{}: module {} is lit in a colour that is not made of 0 and 1",
-                                                      frame.file, lit.module.value));
+                    return tl::unexpected(Sentence::saying(
+                        "{}: module {} is lit in a colour that is not made of 0 and 1", frame.file, lit.module.value));
                 words.coloured = words.coloured || level == 0;
             }
         }
@@ -37,10 +35,10 @@ tl::expected<LitWords, std::string> litWords(std::span<const ModuleId> modules, 
         for (const LitModule& lit : frames[k].lit) {
             const auto found = index.find(lit.module);
             if (found == index.end())
-                return tl::unexpected(fmt::format("{}: lights module {}, which the skin does not have", frames[k].file,
-                                                  lit.module.value));
+                return tl::unexpected(Sentence::saying("{}: lights module {}, which the skin does not have",
+                                                       frames[k].file, lit.module.value));
             if (!seen.emplace(lit.module, true).second)
-                return tl::unexpected(fmt::format("{}: lights module {} twice", frames[k].file, lit.module.value));
+                return tl::unexpected(Sentence::saying("{}: lights module {} twice", frames[k].file, lit.module.value));
             auto& word = words.lit[found->second];
             if (!words.coloured) {
                 word.push_back(first);

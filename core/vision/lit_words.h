@@ -6,6 +6,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "core/geometry/sentence.h"
 #include "core/vision/frame.h"
 
 namespace skincal {
@@ -29,7 +30,7 @@ struct LitWords {
 /// The words of `modules` over `frames`. Colours are told apart as soon as any module is lit in a colour other than
 /// white. Fails with a sentence when a frame lights a module that is not among `modules`, or lights one twice, or a
 /// colour is not made of zeros and ones.
-[[nodiscard]] tl::expected<LitWords, std::string> litWords(std::span<const ModuleId> modules,
-                                                           std::span<const FrameInfo> frames);
+[[nodiscard]] tl::expected<LitWords, Sentence> litWords(std::span<const ModuleId> modules,
+                                                        std::span<const FrameInfo> frames);
 
 }  // namespace skincal

@@ -184,7 +184,7 @@ class Detector {
     tl::expected<cv::Mat, ScanError> load(std::size_t k) {
         auto loaded = load_(k);
         if (!loaded)
-            return tl::unexpected(ScanError{std::move(loaded.error()), false});
+            return tl::unexpected(ScanError{Sentence::verbatim(std::move(loaded.error())), false});
         const auto pixels = FramePixels::make(std::move(*loaded), frames_[k].file, size_, false);
         if (!pixels)
             return tl::unexpected(ScanError{pixels.error(), false});
@@ -246,7 +246,7 @@ tl::expected<ViewDetections, ScanError> detectPaper(std::string name, std::span<
     std::map<ModuleId, Verdict> verdicts;
     for (std::size_t i = 0; i < groups.size(); ++i) {
         if (context.isCancelled())
-            return tl::unexpected(ScanError{"cancelled", true});
+            return tl::unexpected(ScanError{Sentence::saying("cancelled"), true});
         context.report(Sentence::saying("detecting LEDs"), static_cast<double>(i) / static_cast<double>(groups.size()));
         const auto outcomes = detector.detect(groups[i]);
         if (!outcomes)

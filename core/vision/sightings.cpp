@@ -100,7 +100,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             const double allowed = shared ? options.windowRadius - 1.0 : options.maxShift_px;
             if ((fit->centre - Vector2d(match.spot.x, match.spot.y)).norm() > allowed) {
                 verdicts.note(module, DetectionVerdict::NotFound, Undetected::Cause::NotAnLed,
-                              Sentence::saying("only stray light blinks its word"));
+                              sentenceOf(SpotFitError::OutsideWindow));
                 continue;
             }
             // Clipping hides a second LED from the series, which then looks like a disturbance, and makes light no

@@ -8,6 +8,12 @@
 
 namespace skincal {
 
+/// The reason of what the operator threw out, with the operator's own where one was given.
+[[nodiscard]] inline Sentence rejectedByOperator(const std::string& why) {
+    return why.empty() ? Sentence::saying("rejected by the operator")
+                       : Sentence::saying("rejected by the operator: {}", why);
+}
+
 /// Why modules are not found, one reason per module.
 class Verdicts {
   public:

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/estimation/stage_clock.h"
+#include "core/vision/verdicts.h"
 
 namespace skincal {
 namespace {
@@ -26,7 +27,8 @@ tl::expected<ViewDetections, CalibrateError> detect(const Recording& recording, 
     auto found = paper ? detectPaper(view.name, modules, view.frames, loadFrameOfView, options.paperDetector, part)
                        : decodeView(view.name, modules, view.frames, loadFrameOfView, options.decoder, part);
     if (!found)
-        return tl::unexpected(CalibrateError{found.error().message, !found.error().cancelled, found.error().cancelled});
+        return tl::unexpected(
+            CalibrateError{found.error().message.english(), !found.error().cancelled, found.error().cancelled});
     return *found;
 }
 
@@ -37,9 +39,7 @@ void applyDecisions(const Recording& recording, ViewDetections& view) {
             continue;
         const auto removed =
             std::erase_if(view.found, [&](const LedDetection& d) { return d.module == decision.module; });
-        const Sentence why = decision.reason.empty()
-                                 ? Sentence::saying("rejected by the operator")
-                                 : Sentence::saying("rejected by the operator: {}", decision.reason);
+        const Sentence why = rejectedByOperator(decision.reason);
         if (removed > 0)
             view.undetected.push_back(
                 {decision.module, DetectionVerdict::NotFound, why, {}, Undetected::Cause::Rejected});

@@ -62,6 +62,8 @@ void CalibrationDialog::connectAll() {
     connect(take_, &QPushButton::clicked, this, &CalibrationDialog::startOrStop);
     connect(print_, &QPushButton::clicked, this, &CalibrationDialog::choosePrint);
     connect(startOver_, &QPushButton::clicked, &presenter_, &BoardPresenter::clear);
+    connect(takeBack_, &QPushButton::clicked, &presenter_, &BoardPresenter::takeBack);
+    connect(new QShortcut(QKeySequence::Undo, this), &QShortcut::activated, &presenter_, &BoardPresenter::takeBack);
     connect(lensCard_, &LensCard::used, this, &QDialog::accept);
     connect(lensCard_, &LensCard::told, this, &CalibrationDialog::tell);
     const auto remove = [this] {
@@ -175,6 +177,7 @@ void CalibrationDialog::showBoards() {
     wish_->setText(wish.isEmpty() ? tr("That is enough. Further boards still help a little.")
                                   : tr("<b>Next:</b> %1").arg(wish.toHtmlEscaped()));
     startOver_->setEnabled(count > 0);
+    takeBack_->setEnabled(presenter_.canTakeBack());
     form_->setEnabled(count == 0);
     form_->setToolTip(count == 0 ? QString() : tr("Boards of this kind were taken: start over to change it"));
     showChosen();

@@ -67,6 +67,7 @@ class CalibrationDialog : public QDialog {
     QPushButton* print_ = nullptr;
     QPushButton* startOver_ = nullptr;
     QPushButton* remove_ = nullptr;
+    QPushButton* takeBack_ = nullptr;
     QString note_;  ///< what there is to say while nobody looks
     bool isNoteBad_ = false;
 };

@@ -85,9 +85,11 @@ QWidget* CalibrationDialog::buildBoards() {
     column->addWidget(boards_, 1);
     auto* buttons = new QHBoxLayout;
     remove_ = button(tr("Remove board"), "removeBoard", tr("The selected board no longer counts"));
-    startOver_ = button(tr("Start over"), "startOver", tr("Forget all boards, to take them anew or of another kind"));
+    startOver_ = button(tr("Start over"), "startOver", tr("Remove all boards, to take them anew or of another kind"));
+    takeBack_ = button(tr("Take back"), "takeBoardBack", tr("What was removed last counts again (Ctrl+Z)"));
     buttons->addWidget(remove_);
     buttons->addWidget(startOver_);
+    buttons->addWidget(takeBack_);
     buttons->addStretch();
     column->addLayout(buttons);
     row->addLayout(column, 3);

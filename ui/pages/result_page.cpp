@@ -188,11 +188,11 @@ void ResultPage::refresh() {
     }
     for (const auto* texts : {&quality.warnings, &quality.missing}) {
         for (const Sentence& text : *texts)
-            reasons_->addItem(said(text));
+            reasons_->addItem(saidAlone(text));
     }
     for (const Shortfall& shortfall : solution->shortfalls) {
         // The verdict may have named it.
-        const QString text = said(shortfall.text);
+        const QString text = saidAlone(shortfall.text);
         if (reasons_->findItems(text, Qt::MatchExactly).empty())
             reasons_->addItem(text);
     }

@@ -14,7 +14,7 @@ BoardPresenter::BoardPresenter(Workbench& workbench, ScanPresenter& scan, QObjec
     connect(&scan, &ScanPresenter::pictureChanged, this, &BoardPresenter::look);
     connect(&scan, &ScanPresenter::cameraFailed, this, &BoardPresenter::interrupt);
     connect(&workbench, &Workbench::cameraChosen, this, [this] {
-        clear();
+        forget();
         interrupt(tr("Another camera was chosen."));
     });
     connect(&search_, &QFutureWatcherBase::finished, this, &BoardPresenter::searched);
@@ -34,7 +34,7 @@ void BoardPresenter::setPlan(const BoardPlan& plan) {
     if (isSameBoard(plan, this->plan()))
         return;
     collector_ = BoardCollector(plan);
-    clear();
+    forget();
     if (isLooking_ && workbench_.hands && workbench_.hands->holdBoard)
         workbench_.hands->holdBoard(plan);
     emit stateChanged();
@@ -83,6 +83,17 @@ void BoardPresenter::interrupt(const QString& why) {
 }
 
 void BoardPresenter::clear() {
+    if (!collector_.views().empty())
+        removed_.push_back(collector_.views());
+    begin();
+}
+
+void BoardPresenter::forget() {
+    removed_.clear();
+    begin();
+}
+
+void BoardPresenter::begin() {
     ++run_;
     collector_ = BoardCollector(plan());
     sight_ = {};
@@ -96,11 +107,23 @@ QString BoardPresenter::wish() const {
 }
 
 void BoardPresenter::remove(std::size_t board) {
+    std::vector<BoardView> removed{collector_.views().at(board)};
     collector_.remove(board);
+    removed_.push_back(std::move(removed));
     changeBoards();
 }
 
-/// Boards went away: numbers of a calibration no longer fit.
+void BoardPresenter::takeBack() {
+    if (!canTakeBack())
+        return;
+    const std::vector<BoardView> views = std::move(removed_.back());
+    removed_.pop_back();
+    for (const BoardView& view : views)
+        collector_.takeBack(view);
+    changeBoards();
+}
+
+/// Others than were added by themselves: numbers of a calibration no longer fit.
 void BoardPresenter::changeBoards() {
     calibration_.reset();
     failure_.clear();

@@ -36,7 +36,7 @@ class BoardPresenter : public QObject {
     ~BoardPresenter() override;
 
     [[nodiscard]] const BoardPlan& plan() const { return collector_.plan(); }
-    /// Forgets the boards of another plan. Throws std::logic_error where it isn't valid (see planFault).
+    /// Forgets the boards of another plan for good. Throws std::logic_error where it isn't valid (see planFault).
     void setPlan(const BoardPlan& plan);
     [[nodiscard]] DistortionModel lens() const { return lens_; }
     void setLens(DistortionModel lens);
@@ -46,7 +46,7 @@ class BoardPresenter : public QObject {
     void start();
     /// Boards stay.
     void stop();
-    /// Forgets all boards.
+    /// Removes all boards.
     void clear();
 
     [[nodiscard]] const BoardSight& sight() const { return sight_; }
@@ -54,6 +54,9 @@ class BoardPresenter : public QObject {
     /// What to do next, in a sentence; empty where there is enough.
     [[nodiscard]] QString wish() const;
     void remove(std::size_t board);
+    [[nodiscard]] bool canTakeBack() const { return !removed_.empty(); }
+    /// What was removed last counts again, one board or all of them; until there is another plan or camera.
+    void takeBack();
 
     [[nodiscard]] bool isCalibrating() const { return calibrating_ != nullptr; }
     /// Of the boards there are, or of the first of them while a newer one is computed; null where there is none.
@@ -94,10 +97,13 @@ class BoardPresenter : public QObject {
     void calibrated();
     void interrupt(const QString& why);
     void changeBoards();
+    void begin();
+    void forget();
 
     Workbench& workbench_;
     ScanPresenter& scan_;
     BoardCollector collector_{BoardPlan{}};
+    std::vector<std::vector<BoardView>> removed_;  ///< the last ones last
     DistortionModel lens_ = DistortionModel::PlumbBob;
     BoardSight sight_;
     std::shared_ptr<const CameraCalibration> calibration_;

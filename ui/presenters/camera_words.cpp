@@ -7,20 +7,20 @@
 namespace skincal {
 namespace {
 
-QString tr(const char* text) {
-    return QCoreApplication::translate("CameraWords", text);
-}
+struct CameraWords {
+    Q_DECLARE_TR_FUNCTIONS(CameraWords)
+};
 
 QString nameOf(CameraControl control) {
     switch (control) {
         case CameraControl::Exposure:
-            return tr("exposure");
+            return CameraWords::tr("exposure");
         case CameraControl::Gain:
-            return tr("gain");
+            return CameraWords::tr("gain");
         case CameraControl::Focus:
-            return tr("focus");
+            return CameraWords::tr("focus");
         default:
-            return tr("white balance");
+            return CameraWords::tr("white balance");
     }
 }
 
@@ -28,35 +28,35 @@ QString reasonOf(ControlState::Outcome outcome) {
     using Outcome = ControlState::Outcome;
     switch (outcome) {
         case Outcome::NotOffered:
-            return tr("the camera has no control for it");
+            return CameraWords::tr("the camera has no control for it");
         case Outcome::Automatic:
-            return tr("it stays automatic");
+            return CameraWords::tr("it stays automatic");
         case Outcome::Refused:
-            return tr("the camera refuses");
+            return CameraWords::tr("the camera refuses");
         default:
-            return tr("its control cannot be reached");
+            return CameraWords::tr("its control cannot be reached");
     }
 }
 
 QString nameOf(FrameFault fault) {
     switch (fault) {
         case FrameFault::Empty:
-            return tr("unreadable");
+            return CameraWords::tr("unreadable");
         case FrameFault::WrongSize:
-            return tr("of another size");
+            return CameraWords::tr("of another size");
         case FrameFault::TestPicture:
-            return tr("test pictures");
+            return CameraWords::tr("test pictures");
         case FrameFault::Stale:
-            return tr("too old");
+            return CameraWords::tr("too old");
         case FrameFault::RepeatedContent:
-            return tr("the same as the one before");
+            return CameraWords::tr("the same as the one before");
         default:
-            return tr("out of order");
+            return CameraWords::tr("out of order");
     }
 }
 
 QString groupWords() {
-    return tr("Run \"sudo usermod -aG video $USER\", then log out and in again.");
+    return CameraWords::tr("Run \"sudo usermod -aG video $USER\", then log out and in again.");
 }
 
 QString listOf(const QStringList& names) {
@@ -70,46 +70,50 @@ QString cameraWords(const CameraFailure& failure) {
     const bool isNode = where.startsWith(QStringLiteral("/dev/"));
     switch (failure.trouble) {
         case CameraTrouble::NotPluggedIn:
-            return tr("The camera is not plugged in: plug it in, and its picture appears by itself.");
+            return CameraWords::tr("The camera is not plugged in: plug it in, and its picture appears by itself.");
         case CameraTrouble::Unplugged:
-            return tr("The camera was unplugged: plug it in again, and it goes on by itself.");
+            return CameraWords::tr("The camera was unplugged: plug it in again, and it goes on by itself.");
         case CameraTrouble::NoFirstPicture:
-            return tr(
+            return CameraWords::tr(
                 "The camera gives no pictures: unplug it and plug it in again, into a port of the computer rather "
                 "than a hub, or choose a smaller picture.");
         case CameraTrouble::Silent:
-            return tr("The camera has stopped giving pictures: check its cable, or unplug it and plug it in again.");
+            return CameraWords::tr(
+                "The camera has stopped giving pictures: check its cable, or unplug it and plug it in again.");
         case CameraTrouble::Frozen:
-            return tr(
+            return CameraWords::tr(
                 "The camera gives the same picture again and again: take off its lid or cover, or unplug it and "
                 "plug it in again.");
         case CameraTrouble::TestPicture:
-            return tr("A test picture came in the place of the camera's: it is gone. Plug it in again.");
+            return CameraWords::tr("A test picture came in the place of the camera's: it is gone. Plug it in again.");
         case CameraTrouble::WrongSize:
-            return tr("The camera gives pictures of another size than asked for: choose another resolution.");
+            return CameraWords::tr(
+                "The camera gives pictures of another size than asked for: choose another resolution.");
         case CameraTrouble::Late:
-            return tr(
+            return CameraWords::tr(
                 "The pictures come more than a second late: choose a smaller resolution, or close other programs.");
         case CameraTrouble::Unsteady:
-            return tr("The times of the camera's pictures do not rise: unplug it and plug it in again.");
+            return CameraWords::tr("The times of the camera's pictures do not rise: unplug it and plug it in again.");
         case CameraTrouble::Unreadable:
-            return tr("The camera's pictures are in a format that cannot be read: choose another resolution.");
+            return CameraWords::tr(
+                "The camera's pictures are in a format that cannot be read: choose another resolution.");
         case CameraTrouble::Forbidden:
-            return isNode ? tr("You are not allowed to open the camera %1. ").arg(where) + groupWords()
-                          : tr("You are not allowed to read %1: run \"chmod u+r\" on it.").arg(where);
+            return isNode ? CameraWords::tr("You are not allowed to open the camera %1. ").arg(where) + groupWords()
+                          : CameraWords::tr("You are not allowed to read %1: run \"chmod u+r\" on it.").arg(where);
         case CameraTrouble::Busy:
-            return tr("Another program uses the camera: close it. \"fuser -v %1\" names it.").arg(where);
+            return CameraWords::tr("Another program uses the camera: close it. \"fuser -v %1\" names it.").arg(where);
         case CameraTrouble::CannotOpen:
-            return tr("The camera cannot be opened (%1): unplug it and plug it in again.").arg(failure.detail);
+            return CameraWords::tr("The camera cannot be opened (%1): unplug it and plug it in again.")
+                .arg(failure.detail);
         case CameraTrouble::Missing:
-            return tr("There is no file %1: choose another.").arg(where);
+            return CameraWords::tr("There is no file %1: choose another.").arg(where);
         case CameraTrouble::CannotPlay:
             return failure.detail.isEmpty()
-                       ? tr("%1 cannot be played: check the address, or that it is a video.").arg(where)
-                       : tr("%1 cannot be played (%2): check the address, or that it is a video.")
+                       ? CameraWords::tr("%1 cannot be played: check the address, or that it is a video.").arg(where)
+                       : CameraWords::tr("%1 cannot be played (%2): check the address, or that it is a video.")
                              .arg(where, failure.detail);
         default:
-            return tr("%1 is over: choose it again to see it from the beginning.").arg(where);
+            return CameraWords::tr("%1 is over: choose it again to see it from the beginning.").arg(where);
     }
 }
 
@@ -121,7 +125,8 @@ QString failureWords(const FrameSource& source, const QString& why) {
 QString forbiddenWords(const QStringList& nodes) {
     if (nodes.isEmpty())
         return {};
-    return tr("There is a camera that you are not allowed to open (%1). ").arg(listOf(nodes)) + groupWords();
+    return CameraWords::tr("There is a camera that you are not allowed to open (%1). ").arg(listOf(nodes)) +
+           groupWords();
 }
 
 QString controlWords(const std::vector<ControlState>& controls) {
@@ -140,9 +145,9 @@ QString controlWords(const std::vector<ControlState>& controls) {
                 names << nameOf(state.control);
         }
         if (!names.isEmpty())
-            open += tr(" Not held: %1 (%2).").arg(listOf(names), reasonOf(outcome));
+            open += CameraWords::tr(" Not held: %1 (%2).").arg(listOf(names), reasonOf(outcome));
     }
-    QString text = locked.isEmpty() ? QString() : tr("Held still: %1.").arg(listOf(locked));
+    QString text = locked.isEmpty() ? QString() : CameraWords::tr("Held still: %1.").arg(listOf(locked));
     text += open;
     return text.trimmed();
 }
@@ -160,9 +165,9 @@ QString refusedWords(const std::array<std::uint64_t, kFrameFaults>& refused) {
     QStringList parts;
     for (std::size_t k = 0; k < refused.size(); ++k) {
         if (refused[k] > 0)
-            parts << tr("%1 %2").arg(refused[k]).arg(nameOf(static_cast<FrameFault>(k)));
+            parts << CameraWords::tr("%1 %2").arg(refused[k]).arg(nameOf(static_cast<FrameFault>(k)));
     }
-    return parts.isEmpty() ? QString() : tr("Pictures not used: %1.").arg(listOf(parts));
+    return parts.isEmpty() ? QString() : CameraWords::tr("Pictures not used: %1.").arg(listOf(parts));
 }
 
 }  // namespace skincal

@@ -95,12 +95,12 @@ ReportFacts ExportPresenter::factsOf(const Solution& solution) const {
     ReportFacts facts;
     facts.when = now();
     for (const Shortfall& shortfall : solution.shortfalls)
-        facts.shortfalls << said(shortfall.text);
+        facts.shortfalls << saidAlone(shortfall.text);
     if (solution.measurements->camera.width > 0)
         facts.camera = solution.measurements->camera;
     const Session& session = workbench_.session();
     if (session.isStale())
-        facts.shortfalls << tr("the data have changed since: this body is of before the last change");
+        facts.shortfalls << tr("The data have changed since: this body is of before the last change");
     if (const int skin = workbench_.chosenSkin(); skin >= 0)
         facts.skinDevice = workbench_.skinOffers.at(static_cast<std::size_t>(skin)).name;
     if (const int camera = workbench_.chosenCamera(); camera >= 0)

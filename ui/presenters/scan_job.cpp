@@ -26,10 +26,9 @@ double shiftBetween(const cv::Mat& a, const cv::Mat& b) {
 
 }  // namespace
 
-tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
-                                                 std::shared_ptr<const Pictures> pictures,
-                                                 const std::vector<ModuleId>& modules, const RunContext& context,
-                                                 std::optional<ViewDetections> before) {
+tl::expected<ScanResult, Sentence> decodeScan(std::vector<FrameInfo> frames, std::shared_ptr<const Pictures> pictures,
+                                              const std::vector<ModuleId>& modules, const RunContext& context,
+                                              std::optional<ViewDetections> before) {
     const FrameLoader load = [&](std::size_t frame) -> tl::expected<cv::Mat, std::string> {
         return (*pictures)[frame];
     };
@@ -37,7 +36,7 @@ tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
     auto decoded = before ? decodeFurther(*std::move(before), last, modules, frames, load, {}, context)
                           : decodeView("view", modules, frames, load, {}, context);
     if (!decoded)
-        return tl::unexpected(decoded.error().cancelled ? std::string() : decoded.error().message);
+        return tl::unexpected(decoded.error().cancelled ? Sentence() : decoded.error().message);
     ScanResult result;
     // Between looks LEDs tell it, and what a knock spoilt is not used.
     std::vector<std::size_t> dark;

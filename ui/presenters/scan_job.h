@@ -17,10 +17,10 @@ struct ScanResult {
 
 /// Decodes the pictures of a scan. The error is a sentence; empty where it was cancelled.
 /// @param before  what all looks but the last gave, where they were decoded already
-[[nodiscard]] tl::expected<ScanResult, std::string> decodeScan(std::vector<FrameInfo> frames,
-                                                               std::shared_ptr<const Pictures> pictures,
-                                                               const std::vector<ModuleId>& modules,
-                                                               const RunContext& context,
-                                                               std::optional<ViewDetections> before = std::nullopt);
+[[nodiscard]] tl::expected<ScanResult, Sentence> decodeScan(std::vector<FrameInfo> frames,
+                                                            std::shared_ptr<const Pictures> pictures,
+                                                            const std::vector<ModuleId>& modules,
+                                                            const RunContext& context,
+                                                            std::optional<ViewDetections> before = std::nullopt);
 
 }  // namespace skincal

@@ -3,6 +3,7 @@
 #include <QtConcurrent/QtConcurrentRun>
 
 #include "ui/presenters/camera_words.h"
+#include "ui/texts/sentences.h"
 
 namespace skincal {
 
@@ -179,7 +180,7 @@ void ScanPresenter::decodingFinished() {
         return;
     const std::shared_ptr<Outcome> outcome = decoding_.result();
     if (!*outcome) {
-        series_.fail(ScanRun::Fault::NotDecoded, QString::fromStdString(outcome->error()));
+        series_.fail(ScanRun::Fault::NotDecoded, said(outcome->error()));
         return;
     }
     if (looksAgain_) {

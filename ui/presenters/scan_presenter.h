@@ -87,7 +87,7 @@ class ScanPresenter : public QObject {
     void decodingFinished();
     void deliver(ScanResult result);
 
-    using Outcome = tl::expected<ScanResult, std::string>;
+    using Outcome = tl::expected<ScanResult, Sentence>;
 
     Workbench& workbench_;
     DetectionModel detections_;

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <QCoreApplication>
 #include <QString>
 #include <QStringList>
 #include <string>
 
 namespace skincal::html {
+
+struct ReportText {
+    Q_DECLARE_TR_FUNCTIONS(ReportText)
+};
 
 /// Text from files is no markup.
 [[nodiscard]] inline QString escaped(const std::string& text) {

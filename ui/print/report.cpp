@@ -2,7 +2,6 @@
 
 #include <QAbstractTextDocumentLayout>
 #include <QBuffer>
-#include <QCoreApplication>
 #include <QPainter>
 #include <QPdfWriter>
 #include <QTextDocument>
@@ -18,10 +17,6 @@ namespace {
 
 using namespace html;
 
-QString tr(const char* text) {
-    return QCoreApplication::translate("Report", text);
-}
-
 QString list(const QStringList& texts) {
     QString html = QStringLiteral("<ul>\n");
     for (const QString& text : texts)
@@ -34,19 +29,19 @@ QString millimetres(double metres) {
 }
 
 QString origin(const BodyGenerator& generator, const ReportFacts& facts) {
-    QString rows = row({tr("Program"), escaped(generator.program + " " + generator.version)});
-    rows += row({tr("Method"), escaped(generator.method)});
+    QString rows = row({ReportText::tr("Program"), escaped(generator.program + " " + generator.version)});
+    rows += row({ReportText::tr("Method"), escaped(generator.method)});
     for (const auto& [name, value] : generator.options) {
         // Some writers name it twice.
         if (name != "method")
             rows += row({escaped(name), escaped(value)});
     }
     if (!facts.skinDevice.isEmpty())
-        rows += row({tr("Skin"), facts.skinDevice.toHtmlEscaped()});
+        rows += row({ReportText::tr("Skin"), facts.skinDevice.toHtmlEscaped()});
     if (!facts.cameraDevice.isEmpty())
-        rows += row({tr("Camera"), facts.cameraDevice.toHtmlEscaped()});
+        rows += row({ReportText::tr("Camera"), facts.cameraDevice.toHtmlEscaped()});
     if (facts.poses > 0)
-        rows += row({tr("Poses"), QString::number(facts.poses)});
+        rows += row({ReportText::tr("Poses"), QString::number(facts.poses)});
     return table({}, rows);
 }
 
@@ -54,34 +49,36 @@ QString digests(const std::map<std::string, std::string>& ofFiles) {
     QString rows;
     for (const auto& [file, digest] : ofFiles)
         rows += row({escaped(file), QStringLiteral("<code>%1</code>").arg(escaped(digest))});
-    return table({tr("File"), tr("SHA-256")}, rows);
+    return table({ReportText::tr("File"), ReportText::tr("SHA-256")}, rows);
 }
 
 QString figures(const BodyQuality& quality) {
-    QString rows = row({tr("Modules placed"), tr("%1 of %2").arg(quality.modulesPlaced).arg(quality.modulesTotal)});
+    QString rows = row({ReportText::tr("Modules placed"),
+                        ReportText::tr("%1 of %2").arg(quality.modulesPlaced).arg(quality.modulesTotal)});
     const auto add = [&](const QString& name, const std::optional<double>& value, double factor, const QString& unit) {
         if (value)
             rows += row({name, QStringLiteral("%1 %2").arg(factor * *value, 0, 'g', 3).arg(unit)});
     };
-    add(tr("Reprojection error, rms"), quality.residual_rms_px, 1, tr("px"));
-    add(tr("Ports of neighbours apart, rms"), quality.link_mismatch_rms, 1e3, tr("mm"));
-    add(tr("Ports of neighbours apart, widest"), quality.link_mismatch_max, 1e3, tr("mm"));
-    add(tr("Gravity residual, rms"), quality.gravity_residual_rms, 1, tr("m/s²"));
+    add(ReportText::tr("Reprojection error, rms"), quality.residual_rms_px, 1, ReportText::tr("px"));
+    add(ReportText::tr("Ports of neighbours apart, rms"), quality.link_mismatch_rms, 1e3, ReportText::tr("mm"));
+    add(ReportText::tr("Ports of neighbours apart, widest"), quality.link_mismatch_max, 1e3, ReportText::tr("mm"));
+    add(ReportText::tr("Gravity residual, rms"), quality.gravity_residual_rms, 1, ReportText::tr("m/s²"));
     return table({}, rows);
 }
 
 QString camera(const ReportFacts& facts) {
     const CameraModel& c = *facts.camera;
-    QString rows = row({tr("Pictures"), tr("%1 × %2 pixels").arg(c.width).arg(c.height)});
-    rows += row({tr("Focal lengths"), tr("%1 and %2 px").arg(c.fx, 0, 'f', 2).arg(c.fy, 0, 'f', 2)});
-    rows += row({tr("Centre"), tr("%1, %2 px").arg(c.cx, 0, 'f', 2).arg(c.cy, 0, 'f', 2)});
+    QString rows = row({ReportText::tr("Pictures"), ReportText::tr("%1 × %2 pixels").arg(c.width).arg(c.height)});
+    rows += row(
+        {ReportText::tr("Focal lengths"), ReportText::tr("%1 and %2 px").arg(c.fx, 0, 'f', 2).arg(c.fy, 0, 'f', 2)});
+    rows += row({ReportText::tr("Centre"), ReportText::tr("%1, %2 px").arg(c.cx, 0, 'f', 2).arg(c.cy, 0, 'f', 2)});
     QStringList coefficients;
     for (const double coefficient : c.distortion)
         coefficients << QString::number(coefficient, 'g', 5);
-    rows += row({tr("Distortion"),
+    rows += row({ReportText::tr("Distortion"),
                  QString::fromUtf8(name(c.distortionModel).data()) + u' ' + coefficients.join(QStringLiteral(", "))});
-    rows += row(
-        {tr("Intrinsics"), facts.cameraFrom.isEmpty() ? tr("of unknown origin") : facts.cameraFrom.toHtmlEscaped()});
+    rows += row({ReportText::tr("Intrinsics"),
+                 facts.cameraFrom.isEmpty() ? ReportText::tr("of unknown origin") : facts.cameraFrom.toHtmlEscaped()});
     return table({}, rows);
 }
 
@@ -105,9 +102,9 @@ QString degrees(double radians) {
 /// Median and largest.
 QString spreadOf(std::vector<double> sigmas, QString (*write)(double)) {
     if (sigmas.empty())
-        return tr("–");
+        return ReportText::tr("–");
     std::sort(sigmas.begin(), sigmas.end());
-    return tr("%1 (%2)").arg(write(sigmas[sigmas.size() / 2]), write(sigmas.back()));
+    return ReportText::tr("%1 (%2)").arg(write(sigmas[sigmas.size() / 2]), write(sigmas.back()));
 }
 
 QString patches(const BodyModel& body) {
@@ -127,7 +124,9 @@ QString patches(const BodyModel& body) {
                      spreadOf(std::move(positions), millimetres), spreadOf(std::move(rotations), degrees),
                      said(patch.status).toHtmlEscaped()});
     }
-    return table({tr("Patch"), tr("Origin"), tr("Modules"), tr("Views"), tr("σ, mm"), tr("σ, °"), tr("Status")}, rows);
+    return table({ReportText::tr("Patch"), ReportText::tr("Origin"), ReportText::tr("Modules"), ReportText::tr("Views"),
+                  ReportText::tr("σ, mm"), ReportText::tr("σ, °"), ReportText::tr("Status")},
+                 rows);
 }
 
 QString views(const BodyModel& body) {
@@ -137,39 +136,42 @@ QString views(const BodyModel& body) {
         for (const BodyObservation& observation : view.observations)
             used += observation.verdict == ObservationVerdict::Used ? 1 : 0;
         rows += row({escaped(view.name), QString::number(used),
-                     view.residual_rms_px ? QString::number(*view.residual_rms_px, 'f', 3) : tr("–"),
+                     view.residual_rms_px ? QString::number(*view.residual_rms_px, 'f', 3) : ReportText::tr("–"),
                      said(view.status).toHtmlEscaped()});
     }
-    return table({tr("View"), tr("Detections used"), tr("Residual, px"), tr("Status")}, rows);
+    return table({ReportText::tr("View"), ReportText::tr("Detections used"), ReportText::tr("Residual, px"),
+                  ReportText::tr("Status")},
+                 rows);
 }
 
 QString modules(const BodyModel& body, const ReportFacts& facts) {
     QString rows;
     for (const BodyModule& module : body.modules) {
         QStringList cells{QString::number(module.id.value), escaped(module.type),
-                          module.patch ? QString::number(module.patch->value) : tr("–")};
+                          module.patch ? QString::number(module.patch->value) : ReportText::tr("–")};
         if (module.T_body_module) {
             const Vector3d p = module.T_body_module->translation();
             cells << millimetres(p.x()) << millimetres(p.y()) << millimetres(p.z());
         } else {
-            cells << tr("–") << tr("–") << tr("–");
+            cells << ReportText::tr("–") << ReportText::tr("–") << ReportText::tr("–");
         }
         const Sigma sigma = sigmaOf(module);
-        cells << (sigma.position ? millimetres(*sigma.position) : tr("–"))
-              << (sigma.rotation ? degrees(*sigma.rotation) : tr("–"))
+        cells << (sigma.position ? millimetres(*sigma.position) : ReportText::tr("–"))
+              << (sigma.rotation ? degrees(*sigma.rotation) : ReportText::tr("–"))
               << (!module.T_body_module ? said(module.status).toHtmlEscaped()
-                  : module.seen         ? tr("pictures")
-                                        : tr("gravity and links"));
+                  : module.seen         ? ReportText::tr("pictures")
+                                        : ReportText::tr("gravity and links"));
         if (!facts.uniqueIds.empty()) {
             const auto known = facts.uniqueIds.find(module.id);
-            cells << (known != facts.uniqueIds.end() ? escaped(known->second) : tr("–"));
+            cells << (known != facts.uniqueIds.end() ? escaped(known->second) : ReportText::tr("–"));
         }
         rows += row(cells);
     }
-    QStringList heads{tr("Module"), tr("Type"),  tr("Patch"), tr("x, mm"),   tr("y, mm"),
-                      tr("z, mm"),  tr("σ, mm"), tr("σ, °"),  tr("Rests on")};
+    QStringList heads{ReportText::tr("Module"), ReportText::tr("Type"),  ReportText::tr("Patch"),
+                      ReportText::tr("x, mm"),  ReportText::tr("y, mm"), ReportText::tr("z, mm"),
+                      ReportText::tr("σ, mm"),  ReportText::tr("σ, °"),  ReportText::tr("Rests on")};
     if (!facts.uniqueIds.empty())
-        heads << tr("Unique id");
+        heads << ReportText::tr("Unique id");
     return table(heads, rows);
 }
 
@@ -179,7 +181,7 @@ QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
     QStringList reasons;
     for (const auto* some : {&body.quality.warnings, &body.quality.missing}) {
         for (const Sentence& reason : *some)
-            reasons << said(reason);
+            reasons << saidAlone(reason);
     }
     reasons += facts.shortfalls;
     reasons.removeDuplicates();  // the verdict may have named a shortfall
@@ -187,33 +189,38 @@ QString reportHtml(const BodyModel& body, const ReportFacts& facts) {
                        "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>%1</title>\n"
                        "<style>body { font-family: sans-serif; margin: 2em; } table { border-collapse: "
                        "collapse; } th { text-align: left; }</style></head><body>\n")
-                       .arg(tr("Calibration of a robot skin"));
-    html +=
-        QStringLiteral("<h1>%1</h1>\n<p>%2</p>\n").arg(tr("Calibration of a robot skin"), facts.when.toHtmlEscaped());
+                       .arg(ReportText::tr("Calibration of a robot skin"));
+    html += QStringLiteral("<h1>%1</h1>\n<p>%2</p>\n")
+                .arg(ReportText::tr("Calibration of a robot skin"), facts.when.toHtmlEscaped());
     html += QStringLiteral("<p><b>%1</b></p>\n")
-                .arg(tr("Verdict: %1").arg(QString::fromUtf8(name(body.quality.trust).data())));
-    html += reasons.empty() ? QStringLiteral("<p>%1</p>\n").arg(tr("Nothing is missing, and nothing disagrees."))
-                            : list(reasons);
+                .arg(ReportText::tr("Verdict: %1").arg(said(sentenceOf(body.quality.trust))));
+    html += reasons.empty()
+                ? QStringLiteral("<p>%1</p>\n").arg(ReportText::tr("Nothing is missing, and nothing disagrees."))
+                : list(reasons);
     if (!facts.decisions.empty())
-        html += heading(tr("Decided by the operator")) + list(facts.decisions);
-    html += heading(tr("Made by")) + origin(body.generator, facts);
+        html += heading(ReportText::tr("Decided by the operator")) + list(facts.decisions);
+    html += heading(ReportText::tr("Made by")) + origin(body.generator, facts);
     if (facts.camera)
-        html += heading(tr("Camera")) + camera(facts);
-    html += heading(tr("Quality")) + figures(body.quality);
-    html += heading(tr("Patches")) +
-            QStringLiteral("<p>%1</p>\n").arg(tr("σ: of its modules the median one and, in brackets, the largest.")) +
-            patches(body) + heading(tr("Views")) + views(body);
+        html += heading(ReportText::tr("Camera")) + camera(facts);
+    html += heading(ReportText::tr("Quality")) + figures(body.quality);
+    html += heading(ReportText::tr("Patches")) +
+            QStringLiteral("<p>%1</p>\n")
+                .arg(ReportText::tr("σ: of its modules the median one and, in brackets, the largest.")) +
+            patches(body) + heading(ReportText::tr("Views")) + views(body);
     html +=
-        heading(tr("Modules")) +
+        heading(ReportText::tr("Modules")) +
         QStringLiteral("<p>%1</p>\n")
-            .arg(tr("Positions in the body frame (%1). σ is one standard deviation per axis, of position and rotation.")
-                     .arg(escaped(body.body_frame))) +
+            .arg(
+                ReportText::tr(
+                    "Positions in the body frame (%1). σ is one standard deviation per axis, of position and rotation.")
+                    .arg(escaped(body.body_frame))) +
         modules(body, facts);
     if (!facts.scans.empty())
         html += detectionsHtml(body, facts.scans);
     if (!body.generator.recording_sha256.empty())
-        html += heading(tr("Data")) +
-                QStringLiteral("<p>%1</p>\n").arg(tr("Of the files as these data are written to a new folder.")) +
+        html += heading(ReportText::tr("Data")) +
+                QStringLiteral("<p>%1</p>\n")
+                    .arg(ReportText::tr("Of the files as these data are written to a new folder.")) +
                 digests(body.generator.recording_sha256);
     return html + QStringLiteral("</body></html>\n");
 }
@@ -225,7 +232,7 @@ QByteArray reportPdf(const BodyModel& body, const ReportFacts& facts) {
     QPdfWriter writer(&buffer);
     writer.setPageSize(QPageSize(QPageSize::A4));
     writer.setPageMargins(QMarginsF(15, 15, 15, 18), QPageLayout::Millimeter);
-    writer.setTitle(tr("Calibration of a robot skin"));
+    writer.setTitle(ReportText::tr("Calibration of a robot skin"));
     writer.setCreator(QStringLiteral("SkinCal"));
     QTextDocument document;
     QFont font(QStringLiteral("sans-serif"));
@@ -247,7 +254,7 @@ QByteArray reportPdf(const BodyModel& body, const ReportFacts& facts) {
         painter.setFont(font);
         const double line = writer.logicalDpiY() / 6.0;
         painter.drawText(QRectF(0, writer.height() + 0.2 * line, writer.width(), line), Qt::AlignRight,
-                         tr("%1 of %2").arg(page + 1).arg(document.pageCount()));
+                         ReportText::tr("%1 of %2").arg(page + 1).arg(document.pageCount()));
     }
     painter.end();
     return bytes;

@@ -1,7 +1,5 @@
 #include "ui/print/report_detections.h"
 
-#include <QCoreApplication>
-
 #include "ui/print/html.h"
 #include "ui/texts/sentences.h"
 
@@ -9,10 +7,6 @@ namespace skincal {
 namespace {
 
 using namespace html;
-
-QString tr(const char* text) {
-    return QCoreApplication::translate("Report", text);
-}
 
 /// What became of detections in the body, by module.
 std::map<ModuleId, const BodyObservation*> observationsOf(const BodyModel& body, const std::string& view) {
@@ -36,7 +30,7 @@ QString picture(const QByteArray& png) {
 QString wordsOf(const WordReading& reading) {
     constexpr std::size_t kLongest = 80;
     return reading.sent.size() > kLongest
-               ? tr("–")
+               ? ReportText::tr("–")
                : QStringLiteral("<code>%1<br>%2</code>").arg(escaped(reading.sent), escaped(reading.received));
 }
 
@@ -44,42 +38,45 @@ QString detections(const ReportedScan& scan, const BodyModel& body) {
     const auto observations = observationsOf(body, scan.view);
     QString rows;
     for (const ReportedDetection& detection : scan.detections) {
-        QString verdict = detection.isRejected ? tr("rejected") : tr("not used");
-        QString residual = tr("–");
+        QString verdict = detection.isRejected ? ReportText::tr("rejected") : ReportText::tr("not used");
+        QString residual = ReportText::tr("–");
         if (const auto found = observations.find(detection.module); found != observations.end()) {
             const BodyObservation& observation = *found->second;
             if (observation.verdict == ObservationVerdict::Used)
-                verdict = tr("used");
+                verdict = ReportText::tr("used");
             else if (!detection.isRejected && !observation.reason.empty())
                 verdict = said(observation.reason).toHtmlEscaped();
             if (observation.residual)
                 residual = QString::number(observation.residual->norm(), 'f', 3);
         }
-        QStringList cells{QString::number(detection.module.value),
-                          tr("%1, %2").arg(detection.pixel.x(), 0, 'f', 2).arg(detection.pixel.y(), 0, 'f', 2),
-                          QString::number(detection.sigma_px, 'f', 3), residual, verdict};
+        QStringList cells{
+            QString::number(detection.module.value),
+            ReportText::tr("%1, %2").arg(detection.pixel.x(), 0, 'f', 2).arg(detection.pixel.y(), 0, 'f', 2),
+            QString::number(detection.sigma_px, 'f', 3), residual, verdict};
         if (const auto& reading = detection.reading) {
             cells << wordsOf(*reading) << QString::number(reading->snr, 'f', 1)
                   << QString::number(reading->margin, 'f', 0);
         } else {
-            cells << tr("–") << tr("–") << tr("–");
+            cells << ReportText::tr("–") << ReportText::tr("–") << ReportText::tr("–");
         }
         cells << picture(detection.crops);
         rows += row(cells);
     }
-    return QStringLiteral("<h3>%1</h3>\n").arg(tr("%1: %2 pictures").arg(escaped(scan.view)).arg(scan.pictures)) +
-           table({tr("Module"), tr("Pixel"), tr("σ, px"), tr("Residual, px"), tr("Verdict"), tr("Word sent, received"),
-                  tr("SNR"), tr("Lead"), tr("Lit, dark, difference")},
+    return QStringLiteral("<h3>%1</h3>\n")
+               .arg(ReportText::tr("%1: %2 pictures").arg(escaped(scan.view)).arg(scan.pictures)) +
+           table({ReportText::tr("Module"), ReportText::tr("Pixel"), ReportText::tr("σ, px"),
+                  ReportText::tr("Residual, px"), ReportText::tr("Verdict"), ReportText::tr("Word sent, received"),
+                  ReportText::tr("SNR"), ReportText::tr("Lead"), ReportText::tr("Lit, dark, difference")},
                  rows);
 }
 
 }  // namespace
 
 QString detectionsHtml(const BodyModel& body, const std::vector<ReportedScan>& scans) {
-    QString html = heading(tr("Detections"));
-    html +=
-        QStringLiteral("<p>%1</p>\n")
-            .arg(tr("Every LED blinks a word of its own, 1 lit and 0 dark, picture by picture; a point stands where "
+    QString html = heading(ReportText::tr("Detections"));
+    html += QStringLiteral("<p>%1</p>\n")
+                .arg(ReportText::tr(
+                    "Every LED blinks a word of its own, 1 lit and 0 dark, picture by picture; a point stands where "
                     "something disturbed it. SNR: light over noise in one picture. Lead: over whatever else the "
                     "spot could be, −2 log likelihood. Spots of which the lead is least are shown."));
     for (const ReportedScan& scan : scans)

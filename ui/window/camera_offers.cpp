@@ -34,7 +34,7 @@ class ForbiddenCamera : public FrameSource {
     }
     void start() override {
         QMetaObject::invokeMethod(
-            this, [this] { emit failed(QStringLiteral("the camera may not be opened")); }, Qt::QueuedConnection);
+            this, [this] { emit failed(shortReason(*failure())); }, Qt::QueuedConnection);
     }
     void stop() override {}
 

@@ -9,17 +9,17 @@
 namespace skincal {
 namespace {
 
-QString tr(const char* text) {
-    return QCoreApplication::translate("RigOffers", text);
-}
+struct RigWords {
+    Q_DECLARE_TR_FUNCTIONS(RigWords)
+};
 
 }  // namespace
 
 RigOffers offerRig(Workbench& workbench, SimulatedRig& rig) {
     const RigOffers offers{workbench.skinOffers.size(), workbench.cameraOffers.size()};
-    workbench.skinOffers.push_back({tr("Simulated arm"), tr("A skin on a simulated desk"),
+    workbench.skinOffers.push_back({RigWords::tr("Simulated arm"), RigWords::tr("A skin on a simulated desk"),
                                     [&rig] { return std::make_unique<SimulatedSkin>(rig); }});
-    workbench.cameraOffers.push_back({tr("Simulated webcam"), tr("It looks at the simulated desk"),
+    workbench.cameraOffers.push_back({RigWords::tr("Simulated webcam"), RigWords::tr("It looks at the simulated desk"),
                                       [&rig] { return std::make_unique<SimulatedCamera>(rig); }});
     const auto poseOf = [&rig](ModuleId module) {
         return rig.world().T_r_u.at(rig.world().skin.indexById().at(module));

@@ -216,6 +216,18 @@ TEST_F(BoardDesk, ARemovedBoardIsOutAndTheRestIsCalibratedAnew) {
     EXPECT_EQ(boards->calibration(), nullptr) << "too few";
     boards->clear();
     EXPECT_EQ(model.rowCount(), 0);
+    // All of it can be taken back, step by step.
+    while (boards->canTakeBack()) {
+        const std::size_t before = taken();
+        boards->takeBack();
+        EXPECT_GT(taken(), before);
+        EXPECT_EQ(static_cast<std::size_t>(model.rowCount()), taken());
+    }
+    EXPECT_EQ(taken(), rows);
+    boards->takeBack();
+    EXPECT_EQ(taken(), rows);
+    ASSERT_TRUE(waitFor([&] { return boards->calibration() && !boards->isCalibrating(); }));
+    EXPECT_EQ(boards->calibration()->boards.size(), rows);
 }
 
 TEST_F(BoardDesk, AnotherPlanForgetsTheBoardsAnotherLensDoesNot) {
@@ -229,8 +241,11 @@ TEST_F(BoardDesk, AnotherPlanForgetsTheBoardsAnotherLensDoesNot) {
     boards->start();
     BoardPlan other = boards->plan();
     other.columns = 7;
+    boards->remove(0);
+    EXPECT_TRUE(boards->canTakeBack());
     boards->setPlan(other);
     EXPECT_EQ(taken(), 0U);
+    EXPECT_FALSE(boards->canTakeBack()) << "these are of another board";
     EXPECT_EQ(desk.rig.heldBoard()->plan().columns, 7) << "whoever holds it takes the other one";
     ASSERT_TRUE(take(1));
 }

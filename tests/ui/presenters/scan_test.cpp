@@ -157,13 +157,14 @@ TEST(ScanPresenter, LooksOnceWhereThatIsAskedOrNothingIsOpen) {
     ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
     ASSERT_TRUE(desk.scanHere());
     EXPECT_EQ(desk.session().measured().views.back().frames.back().look, 0U) << "those not seen are out of sight";
+    const std::size_t visible = desk.session().measured().views.back().decoded.found.size();
     desk.scan.setLooksAgain(false);
     when(desk, Phase::Streaming, desk.scan.picturesOfAScan() / 2, [&] {
         desk.rig.moveCamera(desk.rig.cameraPose() * makeIsometry(so3Exp({0.3 * kDegree, 0, 0}), Vector3d::Zero()));
     });
     ASSERT_TRUE(desk.scanHere());
     EXPECT_EQ(desk.session().measured().views.back().frames.back().look, 0U);
-    EXPECT_TRUE(desk.session().measured().views.back().decoded.found.empty());
+    EXPECT_LT(desk.session().measured().views.back().decoded.found.size(), visible) << "some are open";
 }
 
 TEST(ScanPresenter, PausesAndGoesOn) {

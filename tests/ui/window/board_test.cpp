@@ -69,6 +69,13 @@ TEST_F(BoardWindow, LeadsFromABoardToIntrinsicsThatCanBeUndone) {
     const int before = taken();
     ASSERT_TRUE(driven.click("removeBoard"));
     EXPECT_EQ(taken(), before - 1);
+    dialog()->activateWindow();
+    ASSERT_TRUE(QTest::qWaitForWindowActive(dialog()));
+    QTest::keyClick(dialog(), Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(taken(), before);
+    QTest::mouseClick(table->viewport(), Qt::LeftButton, {}, table->visualRect(table->model()->index(1, 0)).center());
+    ASSERT_TRUE(driven.click("removeBoard"));
+    EXPECT_EQ(taken(), before - 1);
     ASSERT_TRUE(driven.waitFor([&] { return canUse(); })) << textOf("lensVerdict");
 
     const QTemporaryDir folder;
@@ -107,6 +114,9 @@ TEST_F(BoardWindow, StoppedInTheMiddleAndClosedBoardsAreStillThere) {
     ASSERT_TRUE(driven.click("startOver"));
     EXPECT_EQ(taken(), 0);
     EXPECT_TRUE(driven.find<QComboBox>("boardKind")->isEnabled());
+    ASSERT_TRUE(driven.click("takeBoardBack"));
+    EXPECT_GT(taken(), before);
+    EXPECT_FALSE(driven.find<QPushButton>("takeBoardBack")->isEnabled());
 }
 
 TEST_F(BoardWindow, LeavingThePageEndsIt) {

@@ -67,6 +67,13 @@ TEST(BoardCollector, RedundantViewsAndOtherSizesAreNotKept) {
     EXPECT_EQ(collector.views().size(), 2U);
     EXPECT_EQ(collector.placements().size(), 2U);
     EXPECT_THROW(collector.remove(2), std::logic_error);
+    // What the operator takes back is not asked what it adds.
+    const BoardView near = collector.views().front();
+    collector.takeBack(near);
+    EXPECT_EQ(collector.views().size(), 3U);
+    EXPECT_EQ(collector.placements().size(), 3U);
+    collector.takeBack(viewAt({0, 0, 0.5}, Vector3d::Zero(), {1280, 960}));
+    EXPECT_EQ(collector.views().size(), 3U) << "of another size";
 }
 
 TEST(BoardCollector, EachWishIsFulfilledByTheViewThatItAsksFor) {

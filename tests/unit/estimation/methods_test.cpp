@@ -347,7 +347,7 @@ TEST_P(OurMethods, ASilentModuleIsHeldByLinksAndLedOrLeftOut) {
         EXPECT_EQ(module.T_body_module.has_value(), module.id != corner);
         EXPECT_THAT(module.status, HasSubstr(module.id == corner ? "orientation unknown" : "placed"));
     }
-    EXPECT_THAT(body.quality.missing, ElementsAre(HasSubstr("modules 1: no gravity readings tell how they lie")));
+    EXPECT_THAT(body.quality.missing, ElementsAre(HasSubstr("module 1: no gravity readings tell how it lies")));
 }
 
 TEST_P(OurMethods, APoseThatOnePatchLacksDoesNoHarm) {

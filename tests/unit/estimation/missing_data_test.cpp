@@ -64,6 +64,7 @@ TEST(WhyNotHeld, NamesAHandfulOfModules) {
         all.push_back(m);
     }
     EXPECT_EQ(whyNotHeld(skin, {}), "");
+    EXPECT_THAT(whyNotHeld(skin, {1}).english(), StartsWith("module 21: no gravity readings tell how it lies"));
     EXPECT_THAT(whyNotHeld(skin, {0, 2}).english(), StartsWith("modules 20 and 22: no gravity readings"));
     EXPECT_THAT(whyNotHeld(skin, all), HasSubstr("27 and 3 more: "));
 }

@@ -1,8 +1,11 @@
 #include "core/geometry/sentence.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cstdint>
 #include <sstream>
+#include <stdexcept>
 
 namespace skincal {
 namespace {
@@ -25,6 +28,7 @@ TEST(Sentence, IsFilledInEnglish) {
     EXPECT_EQ(Sentence::saying("module {}: {:.1f}° off, {} of {}", std::size_t{7}, 2.34, -3, name),
               "module 7: 2.3° off, -3 of elbow");
     EXPECT_EQ(Sentence::saying("{:.0f} px", 2.6F), "3 px");
+    EXPECT_EQ(Sentence::saying("world {}", ~std::uint64_t{0}), "world 18446744073709551615");
 }
 
 TEST(Sentence, FillsAnotherAndIsTranslatedPieceByPiece) {
@@ -36,12 +40,14 @@ TEST(Sentence, FillsAnotherAndIsTranslatedPieceByPiece) {
 }
 
 TEST(Sentence, IsSaidInEnglishWhereATranslationCannotBeFilled) {
+    EXPECT_EQ(Sentence::saying("module {}", 3).said([](const char*) { return std::string(); }), "module 3");
     EXPECT_EQ(Sentence::saying("{} of {} seen", 3, 4).said(german), "3 of 4 seen");
 }
 
 TEST(Sentence, VerbatimWordsAreNeitherFilledNorTranslated) {
     const Sentence theirs = Sentence::verbatim("{} of {} seen");
-    EXPECT_EQ(theirs.said(german), "{} of {} seen");
+    const auto nobodyAsks = [](const char* pattern) -> std::string { throw std::logic_error(pattern); };
+    EXPECT_EQ(theirs.said(nobodyAsks), "{} of {} seen");
     EXPECT_TRUE(Sentence::verbatim("").empty());
 }
 

@@ -8,7 +8,7 @@ namespace skincal::testing {
 
 ViewDetections decode(const ScanPainter& scan, const DecoderOptions& options) {
     const auto view = decodeView("view", scan.modules(), scan.frames, scan.loader(), options);
-    EXPECT_TRUE(view.has_value()) << (view ? "" : view.error().message);
+    EXPECT_TRUE(view.has_value()) << (view ? "" : view.error().message.english());
     return view ? *view : ViewDetections{};
 }
 

@@ -47,7 +47,7 @@ ScanPainter colourScan(const std::vector<Colour>& colours, int repeats = 1, std:
 ViewDetections detect(const ScanPainter& scan, const PaperDetectorOptions& options = {},
                       const std::vector<FrameInfo>& told = {}) {
     const auto view = detectPaper("view", scan.modules(), told.empty() ? scan.frames : told, scan.loader(), options);
-    EXPECT_TRUE(view.has_value()) << (view ? "" : view.error().message);
+    EXPECT_TRUE(view.has_value()) << (view ? "" : view.error().message.english());
     return view ? *view : ViewDetections{};
 }
 

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 
 ViewDetections detect(const ScanPainter& scan, const PaperDetectorOptions& options = {}) {
     const auto view = detectPaper("view", scan.modules(), scan.frames, scan.loader(), options);
-    EXPECT_TRUE(view.has_value()) << (view ? "" : view.error().message);
+    EXPECT_TRUE(view.has_value()) << (view ? "" : view.error().message.english());
     return view ? *view : ViewDetections{};
 }
 

@@ -301,8 +301,8 @@ TEST(LitWords, DefectsAreNamed) {
     const std::vector<ModuleId> ids{ModuleId(1), ModuleId(2)};
     const auto unknown = litWords(ids, std::vector<FrameInfo>{{"a.png", {{ModuleId(9)}}}});
     ASSERT_FALSE(unknown.has_value());
-    EXPECT_NE(unknown.error().find("a.png"), std::string::npos);
-    EXPECT_NE(unknown.error().find('9'), std::string::npos);
+    EXPECT_NE(unknown.error().english().find("a.png"), std::string::npos);
+    EXPECT_NE(unknown.error().english().find('9'), std::string::npos);
     EXPECT_FALSE(litWords(ids, std::vector<FrameInfo>{{"a.png", {{ids[0]}, {ids[0]}}}}).has_value());
     EXPECT_FALSE(litWords(ids, std::vector<FrameInfo>{{"a.png", {{ids[0], std::array{2, 0, 0}}}}}).has_value());
 }
@@ -321,7 +321,7 @@ TEST(LitWords, ColoursAreChannelsOfTheirOwn) {
 TEST(FramePixels, PicturesThatCannotBeUsedAreRefused) {
     const auto refused = [](const cv::Mat& picture, bool coloured = false) {
         const auto pixels = FramePixels::make(picture, "views/7.png", cv::Size(8, 6), coloured);
-        return !pixels.has_value() && pixels.error().find("views/7.png") == 0;
+        return !pixels.has_value() && pixels.error().english().find("views/7.png") == 0;
     };
     EXPECT_TRUE(refused(cv::Mat()));
     EXPECT_TRUE(refused(cv::Mat(6, 8, CV_16U, cv::Scalar(0))));

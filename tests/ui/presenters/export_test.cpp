@@ -84,9 +84,9 @@ TEST_F(Exported, ReportsShowWhatDecided) {
     for (const ScannedView& one : desk_.session().measured().views)
         detections += one.decoded.found.size();
     EXPECT_EQ(crops, detections);
-    EXPECT_THAT(html, Not(HasSubstr("the data have changed since")));
+    EXPECT_THAT(html, Not(HasSubstr("The data have changed since")));
     desk_.session().undoStack().undo();
-    EXPECT_THAT(write(".html"), HasSubstr("the data have changed since"));
+    EXPECT_THAT(write(".html"), HasSubstr("The data have changed since"));
 }
 
 }  // namespace

@@ -50,12 +50,12 @@ TEST(Report, ListsAllThatIsMissingAndPraisesOnlyWhereNothingIs) {
     const char* praise = "Nothing is missing";
     body.quality.warnings.clear();
     EXPECT_THAT(reportHtml(body, {"now"}).toStdString(), HasSubstr(praise));
-    const std::string html = reportHtml(body, {"now", {"patch 2 is seen in one view only"}}).toStdString();
-    EXPECT_THAT(html, HasSubstr("patch 2 is seen in one view only"));
+    const std::string html = reportHtml(body, {"now", {"Patch 2 is seen in one view only"}}).toStdString();
+    EXPECT_THAT(html, HasSubstr("Patch 2 is seen in one view only"));
     EXPECT_THAT(html, Not(HasSubstr(praise)));
     body.quality.missing = {Sentence::verbatim("no view shows module 18")};
     EXPECT_THAT(reportHtml(body, {"now"}).toStdString(),
-                testing::AllOf(HasSubstr("no view shows module 18"), Not(HasSubstr(praise))));
+                testing::AllOf(HasSubstr("No view shows module 18"), Not(HasSubstr(praise))));
 }
 
 TEST(Report, NamesTheMethodOnce) {

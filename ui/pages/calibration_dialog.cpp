@@ -9,6 +9,7 @@
 #include <QShortcut>
 #include <QTableView>
 #include <QTimer>
+#include <QtConcurrent/QtConcurrentRun>
 
 #include "ui/pages/board_form.h"
 #include "ui/pages/lens_card.h"
@@ -113,9 +114,12 @@ void CalibrationDialog::choosePrint() {
 }
 
 void CalibrationDialog::printBoard(const QString& file) {
-    const auto written = writeBoardPdf(file.toStdString(), form_->plan());
-    tell(written ? tr("Written: %1. Print it without scaling and check the ruler.").arg(file) : written.error(),
-         !written);
+    QtConcurrent::run([file, plan = form_->plan()] {
+        return writeBoardPdf(file.toStdString(), plan);
+    }).then(this, [this, file](const tl::expected<void, QString>& written) {
+        tell(written ? tr("Written: %1. Print it without scaling and check the ruler.").arg(file) : written.error(),
+             !written);
+    });
 }
 
 void CalibrationDialog::saveAs(const QString& file, CameraFileKind kind) {

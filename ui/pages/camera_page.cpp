@@ -5,6 +5,7 @@
 #include <QFileInfo>
 #include <QPushButton>
 #include <QSlider>
+#include <QtConcurrent/QtConcurrentRun>
 #include <algorithm>
 #include <cmath>
 
@@ -167,15 +168,21 @@ void CameraPage::calibrateHere() {
 }
 
 void CameraPage::loadIntrinsics(const QString& file) {
-    const auto camera = readCameraModel(file.toStdString());
-    if (!camera) {
-        emit failed(QString::fromStdString(camera.error().message()));
-        return;
-    }
-    CameraOrigin origin;
-    origin.kind = CameraOrigin::Kind::File;
-    origin.file = QFileInfo(file).fileName().toStdString();
-    adopt(*camera, std::move(origin), tr("Load intrinsics"));
+    const int load = ++loads_;
+    QtConcurrent::run([file] {
+        return readCameraModel(file.toStdString());
+    }).then(this, [this, file, load](const tl::expected<CameraModel, FileError>& camera) {
+        if (load != loads_)
+            return;  // another was chosen while this one was read
+        if (!camera) {
+            emit failed(QString::fromStdString(camera.error().message()));
+            return;
+        }
+        CameraOrigin origin;
+        origin.kind = CameraOrigin::Kind::File;
+        origin.file = QFileInfo(file).fileName().toStdString();
+        adopt(*camera, std::move(origin), tr("Load intrinsics"));
+    });
 }
 
 void CameraPage::adopt(const CameraModel& camera, CameraOrigin origin, const QString& text) {

@@ -24,7 +24,7 @@ class CameraPage : public Page {
     void setActive(bool active) override;
     /// Offers a video file or stream, and chooses it.
     void openVideo(const QUrl& url);
-    /// A ROS, OpenCV or Kalibr file.
+    /// From a ROS, OpenCV or Kalibr file, once it is read.
     void loadIntrinsics(const QString& file);
 
   signals:
@@ -58,6 +58,7 @@ class CameraPage : public Page {
     QPushButton* makers_;
     QPushButton* calibrate_;
     CalibrationDialog* dialog_ = nullptr;  ///< null before the first time
+    int loads_ = 0;                        ///< files of intrinsics that were chosen
     bool isActive_ = false;
 };
 

@@ -75,6 +75,7 @@ ExportPage::ExportPage(ExportPresenter& presenter, QWidget* parent)
                 name.chop(format.suffix.size());
         }
         file_->setText(name + presenter_.formats()[format()].suffix);
+        outcome_->clear();  // it is of another file
         refresh();
     });
     connect(browse, &QPushButton::clicked, this, &ExportPage::browse);

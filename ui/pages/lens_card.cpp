@@ -4,6 +4,7 @@
 #include <QFileDialog>
 #include <QLabel>
 #include <QVBoxLayout>
+#include <QtConcurrent/QtConcurrentRun>
 
 #include "core/formats/files.h"
 #include "ui/presenters/board_words.h"
@@ -126,10 +127,14 @@ void LensCard::saveAs(const QString& file, CameraFileKind kind) {
         emit told(tr("Kalibr has no such lens: choose another kind of file."), true);
         return;
     }
-    if (const auto written = writeFileAtomically(file.toStdString(), *text))
-        emit told(tr("Written: %1").arg(file), false);
-    else
-        emit told(QString::fromStdString(written.error().message()), true);
+    QtConcurrent::run([file, text = *text] {
+        return writeFileAtomically(file.toStdString(), text);
+    }).then(this, [this, file](const tl::expected<void, FileError>& written) {
+        if (written)
+            emit told(tr("Written: %1").arg(file), false);
+        else
+            emit told(QString::fromStdString(written.error().message()), true);
+    });
 }
 
 }  // namespace skincal

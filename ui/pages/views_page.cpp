@@ -115,6 +115,7 @@ void ViewsPage::refresh() {
     const bool isMoveNext = presenter_.hasHands() && !hasMoved_;
     setPrimary(move_, isMoveNext && !isEnough);
     setPrimary(scanHere_, !isMoveNext && !isEnough);
+    showHint();
 }
 
 void ViewsPage::showHint() {

@@ -151,19 +151,41 @@ void ViewPreview::judge() {
             patch.isPlaced = patch.isPlaced || (state.patch == patch.patch && state.isPlaced);
         isMissing = isMissing || (!patch.isPlaced && patch.modules >= kEnough);
     }
+    const bool hasViews = std::any_of(views_.views().begin(), views_.views().end(),
+                                      [](const ViewState& view) { return !view.isDropped; });
     const bool seesPlaced = !listed(patches_, true).isEmpty();
     const bool seesNew = !listed(patches_, false).isEmpty();
     if (strays > kEnough && strays > spots_.size())
         verdict_ = Verdict::Moving;
     else if (!seesPlaced && !seesNew)
         verdict_ = Verdict::Nothing;
-    else if (!views_.views().empty() && !seesPlaced)
+    else if (hasViews && !seesPlaced)
         verdict_ = Verdict::Unconnected;
     else if (isMissing && !seesNew)
         verdict_ = Verdict::NothingNew;
-    else
+    else if (const auto view = viewFromHere()) {
+        verdict_ = Verdict::SamePlace;
+        sameAs_ = *view;
+    } else
         verdict_ = Verdict::Good;
     emit changed();
+}
+
+std::optional<std::string> ViewPreview::viewFromHere() const {
+    constexpr double kSame_px = 4;
+    const Session& session = workbench_.session();
+    for (const ScannedView& view : session.measured().views) {
+        if (session.decisions().droppedViews.contains(view.name))
+            continue;
+        const auto isThere = [&](const SpotInSight& spot) {
+            return std::any_of(view.decoded.found.begin(), view.decoded.found.end(),
+                               [&](const LedDetection& led) { return (led.pixel - spot.pixel).norm() < kSame_px; });
+        };
+        const auto there = std::count_if(spots_.begin(), spots_.end(), isThere);
+        if (4 * there > 3 * static_cast<std::ptrdiff_t>(spots_.size()))
+            return view.name;
+    }
+    return std::nullopt;
 }
 
 void ViewPreview::forget() {
@@ -188,6 +210,9 @@ QString ViewPreview::words() const {
         case Verdict::NothingNew:
             return tr("Here, in the picture: %1, placed already. That becomes more exact, but nothing is joined.")
                 .arg(placed);
+        case Verdict::SamePlace:
+            return tr("%1 was taken from here: from another place a view tells more.")
+                .arg(QString::fromStdString(sameAs_));
         case Verdict::Good:
             if (fresh.isEmpty())
                 return tr("Good. In the picture: %1.").arg(placed);

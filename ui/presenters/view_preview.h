@@ -2,6 +2,8 @@
 
 #include <QObject>
 #include <QTimer>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "ui/presenters/picture_series.h"
@@ -38,6 +40,7 @@ class ViewPreview : public QObject {
         Nothing,      ///< no patch well enough in the picture
         Unconnected,  ///< patches that are not placed, and none that is
         NothingNew,   ///< placed ones only, while others are missing
+        SamePlace,    ///< a view was scanned from here
         Good,
     };
 
@@ -58,6 +61,8 @@ class ViewPreview : public QObject {
   private:
     void look();
     void judge();
+    /// That of all that was scanned whose picture is this one; nothing where the camera stands elsewhere.
+    [[nodiscard]] std::optional<std::string> viewFromHere() const;
     void forget();
 
     Workbench& workbench_;
@@ -70,6 +75,7 @@ class ViewPreview : public QObject {
     std::vector<PatchInSight> patches_;
     std::vector<SpotInSight> spots_;
     Verdict verdict_ = Verdict::Unknown;
+    std::string sameAs_;  ///< the view, in Verdict::SamePlace
     bool isActive_ = false;
 };
 

@@ -68,6 +68,23 @@ TEST_F(Preview, LeavesTheLightsToAScanAndGoesOnAfterwards) {
     EXPECT_TRUE(waitFor([&] { return changed.count() > before; }));
 }
 
+TEST_F(Preview, SaysThatAViewWasTakenFromHere) {
+    ASSERT_TRUE(look());
+    EXPECT_EQ(desk_.preview.verdict(), Verdict::Good);
+    ASSERT_TRUE(desk_.scanHere());
+    ASSERT_TRUE(waitFor([&] { return desk_.preview.verdict() == Verdict::SamePlace; }));
+    const std::string view = desk_.session().measured().views.back().name;
+    EXPECT_THAT(desk_.preview.words().toStdString(), testing::HasSubstr(view));
+    // One that does not count is no reason to go elsewhere.
+    desk_.session().decide("drop", [&](Decisions& decisions) { decisions.droppedViews.insert(view); });
+    EXPECT_TRUE(waitFor([&] { return desk_.preview.verdict() == Verdict::Good; }));
+    desk_.session().undoStack().undo();
+    ASSERT_TRUE(waitFor([&] { return desk_.preview.verdict() == Verdict::SamePlace; }));
+    ASSERT_TRUE(desk_.moveCamera());
+    EXPECT_TRUE(waitFor([&] { return desk_.preview.verdict() == Verdict::Good; }))
+        << desk_.preview.words().toStdString();
+}
+
 TEST_F(Preview, SaysThatNothingIsInThePicture) {
     // Away from the body.
     Isometry3d away = desk_.rig.cameraPose();

@@ -80,6 +80,7 @@ TEST_F(BoardWindow, LeadsFromABoardToIntrinsicsThatCanBeUndone) {
 
     const QTemporaryDir folder;
     dialog()->saveAs(folder.filePath("camera.yaml"), CameraFileKind::Ros);
+    DrivenWindow::finishFiles();
     ASSERT_TRUE(driven.click("useCalibration"));
     EXPECT_FALSE(dialog()->isVisible());
     const auto& camera = driven.session().decisions().camera;
@@ -149,11 +150,14 @@ TEST_F(BoardWindow, PrintsTheBoardThatIsDescribedAndSaysWhatCanBeNone) {
     ASSERT_TRUE(open());
     const QTemporaryDir folder;
     dialog()->printBoard(folder.filePath("board.pdf"));
+    DrivenWindow::finishFiles();
     EXPECT_TRUE(QFile::exists(folder.filePath("board.pdf")));
     EXPECT_THAT(sentences(), testing::HasSubstr("Written"));
     dialog()->printBoard(folder.filePath("nowhere/board.pdf"));
+    DrivenWindow::finishFiles();
     EXPECT_THAT(sentences(), testing::HasSubstr("can't be written"));
     dialog()->saveAs(folder.filePath("camera.yaml"), CameraFileKind::Ros);
+    DrivenWindow::finishFiles();
     EXPECT_FALSE(QFile::exists(folder.filePath("camera.yaml"))) << "there is none yet";
     // 40 columns of squares need more markers than the dictionary has.
     driven.find<QSpinBox>("boardColumns")->setValue(40);

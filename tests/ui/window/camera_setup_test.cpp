@@ -49,7 +49,10 @@ class CameraSetup : public ::testing::Test {
         EXPECT_TRUE(writeFileAtomically(file.toStdString(), exportCamera(camera, kind).value()));
         return file;
     }
-    void load(const QString& file) { driven_.window.findChild<CameraPage*>()->loadIntrinsics(file); }
+    void load(const QString& file) {
+        driven_.window.findChild<CameraPage*>()->loadIntrinsics(file);
+        DrivenWindow::finishFiles();
+    }
     [[nodiscard]] std::string words() { return driven_.find<QLabel>("intrinsics")->text().toStdString(); }
     void press(const char* action) { driven_.find<QAction>(action)->trigger(); }
 
@@ -92,6 +95,20 @@ TEST_F(CameraSetup, IntrinsicsOfAnotherSizeAreWarnedOf) {
     EXPECT_THAT(words(), HasSubstr("choose that size, or other intrinsics"));
     press("undo");
     EXPECT_THAT(words(), Not(HasSubstr("The camera gives")));
+}
+
+TEST_F(CameraSetup, OfTwoFilesInARowTheSecondCounts) {
+    CameraModel camera = driven_.rig.world().scenario.camera;
+    const QString first = write(camera, CameraFileKind::Ros, "first.yaml");
+    camera.fx += 1;
+    const QString second = write(camera, CameraFileKind::Ros, "second.yaml");
+    auto* page = driven_.window.findChild<CameraPage*>();
+    page->loadIntrinsics(first);
+    page->loadIntrinsics(second);
+    DrivenWindow::finishFiles();
+    EXPECT_THAT(words(), HasSubstr("second.yaml"));
+    press("undo");
+    EXPECT_FALSE(driven_.session().decisions().camera) << "one step";
 }
 
 TEST_F(CameraSetup, AFileThatIsNoneIsAProblemAndChangesNothing) {

@@ -4,6 +4,7 @@
 
 #include <QDir>
 #include <QListView>
+#include <QThreadPool>
 
 #include "tests/ui/watchful_application.h"
 #include "tests/wait_for.h"
@@ -33,6 +34,11 @@ DrivenWindow::~DrivenWindow() {
         return;
     const WatchfulApplication::Stall& stall = WatchfulApplication::instance().longest();
     EXPECT_LT(stall.seconds, WatchfulApplication::kLongest) << stall.what;
+}
+
+void DrivenWindow::finishFiles() {
+    QThreadPool::globalInstance()->waitForDone();
+    QCoreApplication::processEvents();
 }
 
 bool DrivenWindow::waitFor(const std::function<bool()>& isSo) {

@@ -19,6 +19,8 @@ class DrivenWindow {
     DrivenWindow& operator=(const DrivenWindow&) = delete;
 
     /// Runs the event loop until something is so; fails the test where it never is.
+    /// Until files that are being read or written are, and the window knows.
+    static void finishFiles();
     [[nodiscard]] bool waitFor(const std::function<bool()>& isSo);
     /// Clicks a button that is visible and enabled. False where there is none.
     [[nodiscard]] bool click(const char* button);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes the skin protocol: frames through both decoders, a cell among liars, the computer with a skin that lies.
-#   scripts/fuzz-protocol.sh [INPUTS]    100,000,000 in full: an hour on two cores
+#   scripts/fuzz-protocol.sh [INPUTS]    100,000,000 in full: a night on two cores
 # Six of ten inputs are frames, by two processes, the rest is shared by two; all four run beside each other. Each stops
 # at the first input that crashes, takes 5 s or 1 GB, or makes one side say what it must not; the input is then in
 # build/fuzz/found. Inputs of worth are kept in build/fuzz/corpus.

@@ -16,17 +16,6 @@
 namespace skincal {
 namespace {
 
-QString verdictOf(Trust trust) {
-    switch (trust) {
-        case Trust::Good:
-            return ResultPage::tr("Good");
-        case Trust::Usable:
-            return ResultPage::tr("Usable, with reservations");
-        default:
-            return ResultPage::tr("Not to be trusted");
-    }
-}
-
 /// Standard deviations of the positions of placed modules, m, rising.
 std::vector<double> positionSigmas(const BodyModel& body) {
     std::vector<double> sigmas;
@@ -164,7 +153,7 @@ void ResultPage::refresh() {
     const Theme theme = Theme::current();
     const BodyQuality& quality = solution->body.quality;
     const bool isPlaced = quality.modulesPlaced > 0;
-    verdict_->setText(isPlaced ? verdictOf(quality.trust) : tr("Shapes of patches, not placed yet"));
+    verdict_->setText(isPlaced ? saidAlone(sentenceOf(quality.trust)) : tr("Shapes of patches, not placed yet"));
     const QColor colour = quality.trust == Trust::NotToBeTrusted ? theme.bad
                           : quality.trust == Trust::Usable       ? theme.attention
                                                                  : theme.good;

@@ -44,6 +44,11 @@ TEST(Demo, LeadsFromConnectToAnExportedFile) {
     const auto* hint = driven.find<QLabel>("hint");
     auto* progress = driven.find<QProgressBar>("scanProgress");
     for (int view = 1; view < 10 && !isViewsDone(); ++view) {
+        if (view == 1) {
+            ASSERT_TRUE(driven.goTo(Step::Views));
+            ASSERT_TRUE(driven.waitFor([&] { return hint->text().contains("was taken from here"); }))
+                << "the place of the view before is none to praise";
+        }
         ASSERT_TRUE(driven.moveCameraOn());
         if (view == 1) {
             ASSERT_TRUE(driven.waitFor([&] { return hint->text().contains("In the picture"); }))

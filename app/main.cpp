@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include "app/command_line.h"
 #include "app/window.h"
@@ -48,7 +49,16 @@ int runProgram(int argc, char** argv) {
     line.app.add_flag("--demo", window.demo,
                       "Open the window on a simulated arm with skin and a webcam, connected already");
     line.app.add_flag("--light", window.light, "Light colours");
-    line.app.add_option("--open", window.recording, "Open the window with this recording (a *.skinrec directory)");
+    const auto isRecording = [](const std::string& path) -> std::string {
+        std::error_code none;
+        if (std::filesystem::is_directory(path, none))
+            return {};
+        return "'" + printable(path) + "' is neither a command nor the directory of a recording";
+    };
+    line.app
+        .add_option("recording,--open", window.recording, "Open the window with this recording (a *.skinrec directory)")
+        ->option_text("RECORDING")
+        ->check(CLI::Validator(isRecording, "", "recording"));
     line.run = [&] { return runWindow(argc, argv, window); };
     const std::string exitCodes =
         "Exit codes: 0 done; 1 the data do not suffice (what is missing is printed), or the result is not to be "

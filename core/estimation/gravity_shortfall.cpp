@@ -74,7 +74,7 @@ Shortfall missing(const std::vector<std::size_t>& modules, const BodySolution& s
     name(shortfall, modules, solution);
     const bool all = modules.size() == solution.layout.patchOf.size();
     const Sentence advice =
-        Sentence::saying("read the accelerometers in three poses at least, better six, each with another side up");
+        Sentence::saying("read the accelerometers in three poses at least, each with another side up");
     shortfall.text =
         all ? Sentence::saying(
                   "no module has gravity readings in two poses or more, which tell how modules are turned: {}", advice)

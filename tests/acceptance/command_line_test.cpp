@@ -300,7 +300,11 @@ TEST_F(CommandLineTest, UsageErrorsGiveTwoAndHelpGivesZero) {
     const Outcome window = run("", "-u DISPLAY -u WAYLAND_DISPLAY");
     EXPECT_EQ(window.code, 2) << "there is no display to open a window on";
     EXPECT_THAT(window.error, HasSubstr("no display"));
-    EXPECT_EQ(run("fly").code, 2);
+    EXPECT_THAT(run(directory_.path().string(), "-u DISPLAY").error, HasSubstr("no display"))
+        << "a recording is one to open";
+    const Outcome unknown = run("calibrat");
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_THAT(unknown.error, HasSubstr("'calibrat' is neither a command nor the directory of a recording"));
     EXPECT_EQ(run("calibrate").code, 2);
     EXPECT_EQ(run("calibrate x --method magic").code, 2);
     EXPECT_EQ(run("--version").code, 0);

@@ -14,6 +14,10 @@ ScanPresenter::ScanPresenter(Workbench& workbench, QObject* parent)
     connect(&workbench.session(), &Session::decisionsChanged, this, &ScanPresenter::stateChanged);
     const auto countPictures = [this] { picturesOfAScan_ = codedScan(modules(), 0).size(); };
     connect(&workbench.session(), &Session::skinChanged, this, countPictures);
+    connect(&workbench.session(), &Session::opened, this, [this] {
+        if (const auto& views = workbench_.session().measured().views; !views.empty())
+            showView(views.back().name);  // what was opened is to be looked at
+    });
     countPictures();
     connect(&series_, &PictureSeries::runningChanged, &workbench, &Workbench::setScanning);
     connect(&series_, &PictureSeries::stateChanged, this, &ScanPresenter::seriesChanged);

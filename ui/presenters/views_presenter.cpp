@@ -98,7 +98,12 @@ QString ViewsPresenter::reason() const {
     const QString gain = tr("The place of the worst module among the others is then known to %1 instead of %2 mm.")
                              .arg(1e3 * view->gain.worstAfter, 0, 'f', 2)
                              .arg(1e3 * view->gain.worstBefore, 0, 'f', 2);
-    return isEnough() ? tr("One more makes it more exact: %1. %2").arg(said(view->words), gain) : gain;
+    if (!isEnough())
+        return gain;
+    constexpr double kWorthAWalk = 0.9;
+    if (view->gain.worstAfter > kWorthAWalk * view->gain.worstBefore)
+        return tr("One more would hardly make it more exact.");
+    return tr("One more makes it more exact: %1. %2").arg(said(view->words), gain);
 }
 
 bool ViewsPresenter::goesToTarget() const {

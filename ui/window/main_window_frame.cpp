@@ -165,7 +165,7 @@ void MainWindow::buildFrame() {
     down->addWidget(across);
     down->addWidget(problems);
     down->setStretchFactor(0, 1);
-    down->setSizes({760, 96});
+    down->setSizes({760, 64});  // two lines: few skins have more to tell, and others scroll
     down->setCollapsible(0, false);
     setCentralWidget(down);
 

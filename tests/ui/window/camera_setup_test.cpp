@@ -6,8 +6,10 @@
 #include <QAction>
 #include <QComboBox>
 #include <QLabel>
+#include <QSemaphore>
 #include <QSlider>
 #include <QTemporaryDir>
+#include <QThreadPool>
 
 #include "core/formats/camera_export.h"
 #include "core/formats/files.h"
@@ -103,8 +105,13 @@ TEST_F(CameraSetup, OfTwoFilesInARowTheSecondCounts) {
     camera.fx += 1;
     const QString second = write(camera, CameraFileKind::Ros, "second.yaml");
     auto* page = driven_.window.findChild<CameraPage*>();
+    // Neither is read before both are chosen: the first alone would have been in time, and counted.
+    QSemaphore areChosen;
+    for (int i = 0; i < QThreadPool::globalInstance()->maxThreadCount(); ++i)
+        QThreadPool::globalInstance()->start([&areChosen] { areChosen.acquire(); });
     page->loadIntrinsics(first);
     page->loadIntrinsics(second);
+    areChosen.release(QThreadPool::globalInstance()->maxThreadCount());
     DrivenWindow::finishFiles();
     EXPECT_THAT(words(), HasSubstr("second.yaml"));
     press("undo");

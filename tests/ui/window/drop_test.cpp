@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <QComboBox>
 #include <QDir>
 #include <QDropEvent>
 #include <QMimeData>
@@ -44,7 +45,11 @@ TEST_F(Drop, ARecordingIsOpened) {
     ASSERT_TRUE(isTaken(kRecording));
     drop(kRecording);
     ASSERT_TRUE(isOpened());
-    EXPECT_FALSE(driven_.session().measured().views.empty());
+    const auto& views = driven_.session().measured().views;
+    ASSERT_FALSE(views.empty());
+    ASSERT_TRUE(driven_.waitFor([&] {
+        return driven_.find<QComboBox>("views")->currentText().toStdString() == views.back().name;
+    })) << "what was opened is shown, not a camera that has nothing to do with it";
 }
 
 TEST_F(Drop, SoIsOneDraggedByTheFileThatMakesItOne) {

@@ -131,6 +131,20 @@
             <numerusform>%n modules did not answer: %1</numerusform>
         </translation>
     </message>
+    <message numerus="yes">
+        <source>%n modules that were there do not answer any more: %1. Connect again to go on without them</source>
+        <translation>
+            <numerusform>%n module that was there does not answer any more: %1. Connect again to go on without it</numerusform>
+            <numerusform>%n modules that were there do not answer any more: %1. Connect again to go on without them</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n modules have come that were not there before. Connect again to take them in</source>
+        <translation>
+            <numerusform>%n module has come that was not there before. Connect again to take it in</numerusform>
+            <numerusform>%n modules have come that were not there before. Connect again to take them in</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>skincal::ScanPage</name>

@@ -224,7 +224,7 @@ void addVirtualSkinCommand(CommandLine& line) {
         ->check(CLI::Range(0.0, 0.5));
     command->add_option("--lost-frames", arguments->faults.lostFrames, "Share of frames that never arrive")
         ->check(CLI::Range(0.0, 0.9));
-    command->add_option("--latency-ms", arguments->latency_ms, "Delay of each wire")->check(CLI::Range(0.0, 1000.0));
+    command->add_option("--latency-ms", arguments->latency_ms, "Delay of each wire")->check(CLI::Range(0.0, 200.0));
     command->add_option("--dead", arguments->dead, "Modules that have no power")->delimiter(',');
     command->add_option("--cut", arguments->cut, "MODULE:PORT, wires that are cut")->delimiter(',');
     command

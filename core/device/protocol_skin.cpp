@@ -17,18 +17,17 @@ ProtocolSkin::ProtocolSkin(LineAddress address, std::vector<ModuleTemplate> temp
     : SkinDevice(parent), address_(address), templates_(std::move(templates)), worker_(new SkinWorker(address)) {
     worker_->moveToThread(&thread_);
     connect(&thread_, &QThread::finished, worker_, &QObject::deleteLater);
-    connect(worker_, &SkinWorker::opened, this, [this] {
-        if (state_ != State::Opening)
+    connect(worker_, &SkinWorker::opened, this, [this](const QString&, quint64 opening) {
+        if (state_ != State::Opening || opening != opening_)
             return;
         state_ = State::Open;
         emit opened();
     });
-    connect(worker_, &SkinWorker::failed, this, [this](const QString& why) {
-        if (state_ == State::Closed)
+    connect(worker_, &SkinWorker::failed, this, [this](const QString& why, quint64 opening) {
+        if (state_ == State::Closed || opening != opening_)
             return;
         const bool wasOpen = std::exchange(state_, State::Closed) == State::Open;
-        moduleOf_.clear();
-        cellOf_.clear();
+        forgetNumbers();
         const QPointer<ProtocolSkin> self(this);
         emit failed(why);
         if (self && wasOpen)
@@ -39,10 +38,7 @@ ProtocolSkin::ProtocolSkin(LineAddress address, std::vector<ModuleTemplate> temp
             emit moduleFound(modules_.idOf(cell));
     });
     connect(worker_, &SkinWorker::explored, this, &ProtocolSkin::adopt);
-    connect(worker_, &SkinWorker::numbersLost, this, [this] {
-        moduleOf_.clear();
-        cellOf_.clear();
-    });
+    connect(worker_, &SkinWorker::numbersLost, this, &ProtocolSkin::forgetNumbers);
     connect(worker_, &SkinWorker::shown, this, [this](quint64 token) {
         if (state_ == State::Open)
             emit lightShown(token);
@@ -67,15 +63,14 @@ void ProtocolSkin::open() {
     if (state_ != State::Closed)
         return;
     state_ = State::Opening;
-    post(worker_, [worker = worker_] { worker->open(); });
+    post(worker_, [worker = worker_, opening = ++opening_] { worker->open(opening); });
 }
 
 void ProtocolSkin::close() {
     if (state_ == State::Closed)
         return;
     const bool wasOpen = std::exchange(state_, State::Closed) == State::Open;
-    moduleOf_.clear();
-    cellOf_.clear();
+    forgetNumbers();
     post(worker_, [worker = worker_] { worker->close(); });
     if (wasOpen)
         post(this, [this] { emit closed(); });
@@ -90,9 +85,16 @@ void ProtocolSkin::explore() {
     post(worker_, [worker = worker_] { worker->explore(); });
 }
 
-void ProtocolSkin::adopt(const SkinNetwork& network) {
+void ProtocolSkin::forgetNumbers() {
+    moduleOf_.clear();
+    cellOf_.clear();
+}
+
+void ProtocolSkin::adopt(const SkinNetwork& network, quint64 exploration) {
     if (state_ != State::Open)
         return;
+    forgetNumbers();
+    exploration_ = exploration;
     const auto skin = skinOf(network, templates_, modules_);
     if (!skin) {
         const QString type = QString::fromStdString(skin.error());
@@ -100,8 +102,6 @@ void ProtocolSkin::adopt(const SkinNetwork& network) {
         return;
     }
     network_ = network;
-    moduleOf_.clear();
-    cellOf_.clear();
     std::set<std::string> found;
     for (const NetworkCell& cell : network.cells) {
         const ModuleId module = modules_.idOf(cell);
@@ -112,10 +112,9 @@ void ProtocolSkin::adopt(const SkinNetwork& network) {
     if (!prepared_.empty())
         prepare(prepared_);
     const bool changed = found != std::exchange(known_, found);
+    tellLight();
     if (std::exchange(asked_, false) || changed)
         emit explored(*skin);
-    else
-        tellLight();
 }
 
 std::vector<LitCell> ProtocolSkin::cellsOf(const std::vector<LitModule>& lit) const {
@@ -125,6 +124,8 @@ std::vector<LitCell> ProtocolSkin::cellsOf(const std::vector<LitModule>& lit) co
         if (cell == cellOf_.end())
             continue;  // it does not answer: nothing that is lit will be taken for it
         const std::array<int, 3> c = one.colour.value_or(std::array{1, 1, 1});
+        if (c == std::array{0, 0, 0})
+            continue;  // as dark as any that is not lit
         cells.push_back({cell->second, static_cast<std::uint8_t>((c[0] ? 1 : 0) | (c[1] ? 2 : 0) | (c[2] ? 4 : 0))});
     }
     std::sort(cells.begin(), cells.end(), [](const LitCell& a, const LitCell& b) { return a.cell < b.cell; });
@@ -173,8 +174,9 @@ std::uint64_t ProtocolSkin::lightAt(const std::vector<LitModule>& lit, std::chro
 /// While cells have no numbers it waits for adopt().
 void ProtocolSkin::tellLight(std::optional<std::chrono::microseconds> when) {
     if (state_ == State::Open && !cellOf_.empty())
-        post(worker_,
-             [worker = worker_, cells = cellsOf(lit_), token = token_, when] { worker->light(cells, token, when); });
+        post(worker_, [worker = worker_, cells = cellsOf(lit_), token = token_, exploration = exploration_, when] {
+            worker->light(cells, token, exploration, when);
+        });
 }
 
 void ProtocolSkin::streamAcceleration(bool on) {

@@ -16,7 +16,8 @@ namespace skincal {
 ///
 /// Modules keep their ids as long as the device lives, and those of remember(), however the network numbers them. Where
 /// cells restart the network is explored anew without a word, and explored() comes again only if it has changed.
-/// Unplugged, it fails and closes; open() may be called again at any time.
+/// Unplugged, it fails and closes; open() may be called again at any time, and is worth it after cameBack(): of a
+/// serial port as it appears, of others every few seconds.
 class ProtocolSkin : public SkinDevice {
     Q_OBJECT
   public:
@@ -43,7 +44,8 @@ class ProtocolSkin : public SkinDevice {
   private:
     enum class State { Closed, Opening, Open };
 
-    void adopt(const SkinNetwork& network);
+    void adopt(const SkinNetwork& network, quint64 exploration);
+    void forgetNumbers();
     void tellLight(std::optional<std::chrono::microseconds> when = {});
     [[nodiscard]] std::vector<LitCell> cellsOf(const std::vector<LitModule>& lit) const;
     void emitAcceleration(const std::vector<RestReading>& readings, qint64 time_us);
@@ -53,7 +55,9 @@ class ProtocolSkin : public SkinDevice {
     std::vector<ModuleTemplate> templates_;
     ModuleRegister modules_;
     State state_ = State::Closed;
-    bool asked_ = false;  ///< for an exploration
+    quint64 opening_ = 0;
+    quint64 exploration_ = 0;  ///< that gave the numbers
+    bool asked_ = false;       ///< for an exploration
     std::map<CellNumber, ModuleId> moduleOf_;
     std::map<ModuleId, CellNumber> cellOf_;
     SkinNetwork network_;

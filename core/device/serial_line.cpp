@@ -7,6 +7,8 @@
 namespace skincal {
 namespace {
 
+constexpr int kLastWords = 100;  // ms, for what waits to be sent as it is closed
+
 LineFault faultOf(QSerialPort::SerialPortError error, const QString& path) {
     switch (error) {
         case QSerialPort::DeviceNotFoundError:
@@ -76,6 +78,8 @@ void SerialLine::close() {
     if (!port_)
         return;
     port_->disconnect(this);
+    if (port_->isOpen() && port_->bytesToWrite() > 0)
+        port_->waitForBytesWritten(kLastWords);
     port_->close();
     port_.release()->deleteLater();
 }

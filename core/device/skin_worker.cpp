@@ -17,11 +17,14 @@ constexpr auto kFlush = 20ms;
 constexpr SkinClient::Time kBoot = 5s;
 constexpr SkinClient::Time kProgramStart = 15s;
 constexpr auto kWatch = 500ms;
-/// Where the port is there and does not serve: another program may have it.
+/// Where the port is there and does not serve: another program may have it. Sockets and programs can only be tried.
 constexpr auto kWatchAgain = 3s;
+/// Cells that restart so often, with no more than so long in between, do so because of what they are told to do.
+constexpr int kMostRestarts = 10;
+constexpr SkinClient::Time kPeace = 20s;
 constexpr auto kRestPeriod = 100ms;
 /// Of what the line carries, for streams: the rest is for lights and questions.
-constexpr double kStreamShare = 0.5;
+constexpr double kStreamShare = 0.7;
 constexpr double kRestBytes = 66;  ///< of a Rest frame, with its share of an acknowledgement
 
 QString wordsFor(SkinFault fault, const LineAddress& address) {
@@ -55,7 +58,7 @@ SkinWorker::SkinWorker(LineAddress address) : address_(std::move(address)), time
     timer_.setSingleShot(true);
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &SkinWorker::pump);
-    connect(&watch_, &QTimer::timeout, this, &SkinWorker::watchPort);
+    connect(&watch_, &QTimer::timeout, this, &SkinWorker::lookForPort);
     flush_.setInterval(kFlush);
     connect(&flush_, &QTimer::timeout, this, &SkinWorker::flushStreams);
 }
@@ -68,8 +71,10 @@ SkinWorker::Time SkinWorker::now() {
     return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-void SkinWorker::open() {
+void SkinWorker::open(quint64 opening) {
     shut();
+    opening_ = opening;
+    restarts_ = 0;
     line_ = makeLine(address_);
     connect(line_.get(), &Line::opened, this, [this] {
         ReliableLinkOptions options;
@@ -99,9 +104,8 @@ void SkinWorker::close() {
 
 void SkinWorker::shut() {
     if (client_ && line_) {
-        client_->light({}, 0, now());
         std::vector<std::uint8_t> bytes;
-        client_->poll(now(), bytes);
+        client_->takeLeave(now(), bytes);
         line_->write({reinterpret_cast<const char*>(bytes.data()), static_cast<qsizetype>(bytes.size())});
     }
     timer_.stop();
@@ -115,20 +119,32 @@ void SkinWorker::shut() {
     }
     streamsRest_ = false;
     streamsTouch_ = false;
+    isExploreDue_ = false;
+    forgetNumbers();
+}
+
+void SkinWorker::forgetNumbers() {
+    ++exploration_;
+    readings_.clear();
+    touches_.clear();
 }
 
 void SkinWorker::lose(LineFault fault, const QString& detail) {
     fail(lineHelp(fault, address_, detail));
     const bool isAgain = isReturning_;
-    isReturning_ = isAgain || (fault == LineFault::Ended && address_.kind == LineAddress::Kind::Serial);
+    isReturning_ = isAgain || fault == LineFault::Ended;
     if (isReturning_)
-        watch_.start(isAgain && fault != LineFault::Ended ? kWatchAgain : kWatch);
+        watchPort(isAgain && fault != LineFault::Ended ? kWatchAgain : kWatch);
 }
 
-void SkinWorker::watchPort() {
+void SkinWorker::watchPort(std::chrono::milliseconds interval) {
+    watch_.start(address_.kind == LineAddress::Kind::Serial ? interval : kWatchAgain);
+}
+
+void SkinWorker::lookForPort() {
     // Readable, too: udev sets permissions a moment after the port is there.
     const QFileInfo port(SerialLine::fullPath(address_.target));
-    if (!port.isReadable() || !port.isWritable())
+    if (address_.kind == LineAddress::Kind::Serial && (!port.isReadable() || !port.isWritable()))
         return;
     watch_.stop();
     emit cameBack();
@@ -136,7 +152,7 @@ void SkinWorker::watchPort() {
 
 void SkinWorker::fail(const QString& why) {
     shut();
-    emit failed(why);
+    emit failed(why, opening_);
 }
 
 void SkinWorker::pump() {
@@ -157,8 +173,10 @@ void SkinWorker::pump() {
 }
 
 void SkinWorker::explore() {
+    isExploreDue_ = false;
     if (!client_)
         return;
+    forgetNumbers();
     client_->explore(now());
     pump();
 }
@@ -168,8 +186,9 @@ void SkinWorker::prepare(const std::vector<std::vector<LitCell>>& sets) {
         client_->prepare(sets);
 }
 
-void SkinWorker::light(const std::vector<LitCell>& lit, quint64 token, std::optional<std::chrono::microseconds> when) {
-    if (!client_)
+void SkinWorker::light(const std::vector<LitCell>& lit, quint64 token, quint64 exploration,
+                       std::optional<std::chrono::microseconds> when) {
+    if (!client_ || exploration != exploration_)
         return;
     client_->light(lit, token, now(), when);
     pump();
@@ -182,6 +201,7 @@ std::chrono::milliseconds SkinWorker::restPeriod() const {
 
 void SkinWorker::streamRest(bool on) {
     streamsRest_ = on;
+    readings_.clear();
     if (!client_)
         return;
     client_->streamRest(on ? restPeriod() : 0ms);
@@ -222,7 +242,7 @@ void SkinWorker::flushStreams() {
 
 void SkinWorker::onOpened(const std::string& firmware) {
     isReturning_ = false;
-    emit opened(QString::fromStdString(firmware));
+    emit opened(QString::fromStdString(firmware), opening_);
 }
 
 void SkinWorker::onFault(SkinFault fault) {
@@ -233,7 +253,7 @@ void SkinWorker::onFault(SkinFault fault) {
         fail(wordsFor(fault, address_));
         // Plugged in again, it may take its time to start, or be pulled in the middle of that.
         if (isReturning_)
-            watch_.start(kWatch);
+            watchPort(kWatch);
     });
 }
 
@@ -244,7 +264,7 @@ void SkinWorker::onCell(const NetworkCell& cell) {
 }
 
 void SkinWorker::onExplored(const SkinNetwork& network) {
-    emit explored(network);
+    emit explored(network, exploration_);
     QTimer::singleShot(0, this, [this] {
         if (streamsRest_)
             streamRest(true);
@@ -254,8 +274,23 @@ void SkinWorker::onExplored(const SkinNetwork& network) {
 }
 
 void SkinWorker::onRestarted() {
+    forgetNumbers();
     emit numbersLost();
-    QTimer::singleShot(0, this, &SkinWorker::explore);
+    if (std::exchange(isExploreDue_, true))
+        return;  // a patch whose power comes back restarts cell by cell
+    restarts_ = now() < restarted_ + kPeace ? restarts_ + 1 : 1;
+    restarted_ = now();
+    const bool isEnough = restarts_ > kMostRestarts;
+    QTimer::singleShot(0, this, [this, isEnough] {
+        if (!isExploreDue_)
+            return;
+        if (isEnough)
+            fail(tr("cells of the skin at %1 restart again and again: is their power supply strong enough for all "
+                    "LEDs?")
+                     .arg(address_.text));
+        else
+            explore();
+    });
 }
 
 void SkinWorker::onShown(std::uint64_t token) {
@@ -264,6 +299,8 @@ void SkinWorker::onShown(std::uint64_t token) {
 
 void SkinWorker::onNotShown(std::uint64_t /*token*/, std::size_t /*shown*/) {
     // Whoever waits for the light has a timeout. Cells that don't answer any more have to be looked for.
+    forgetNumbers();
+    emit numbersLost();
     QTimer::singleShot(0, this, &SkinWorker::explore);
 }
 

@@ -14,7 +14,8 @@
 namespace skincal {
 
 /// What runs on the thread of a ProtocolSkin: the line, the protocol's client and its timer. Slots are called and
-/// signals heard across threads, queued; nothing else is shared.
+/// signals heard across threads, queued; nothing else is shared. What is still under way when things have changed is
+/// told by its number: of an opening that has ended, or by an exploration whose numbers are void.
 class SkinWorker : public QObject, private SkinListener {
     Q_OBJECT
   public:
@@ -25,28 +26,30 @@ class SkinWorker : public QObject, private SkinListener {
     [[nodiscard]] static std::chrono::microseconds now();
 
   public slots:
-    void open();
+    /// @param opening  handed back with what comes of it
+    void open(quint64 opening);
     void close();
     void explore();
     void prepare(const std::vector<std::vector<skincal::LitCell>>& sets);
-    /// @param when  on now()'s clock; at once where there is none
-    void light(const std::vector<skincal::LitCell>& lit, quint64 token,
+    /// @param exploration  that gave the numbers; of another one it is dropped
+    /// @param when         on now()'s clock; at once where there is none
+    void light(const std::vector<skincal::LitCell>& lit, quint64 token, quint64 exploration,
                std::optional<std::chrono::microseconds> when = {});
     /// Lets every cell send as often as the line can carry, but not more often than so.
     void streamRest(bool on);
     void streamTouch(bool on);
 
   signals:
-    void opened(const QString& firmware);
+    void opened(const QString& firmware, quint64 opening);
     /// The line is closed by then.
-    void failed(const QString& why);
+    void failed(const QString& why, quint64 opening);
     void cellFound(const skincal::NetworkCell& cell);
-    void explored(const skincal::SkinNetwork& network);
+    void explored(const skincal::SkinNetwork& network, quint64 exploration);
     /// A cell has restarted: numbers are void; explored() follows.
     void numbersLost();
     void shown(quint64 token);
     void accelerationCame(const std::vector<skincal::RestReading>& readings, qint64 time_us);
-    /// The port that was lost is there again.
+    /// What was lost is there again, or is worth another try.
     void cameBack();
     void touchCame(const std::vector<skincal::CellTouch>& touches, qint64 time_us);
 
@@ -67,19 +70,27 @@ class SkinWorker : public QObject, private SkinListener {
 
     [[nodiscard]] std::chrono::milliseconds restPeriod() const;
     void shut();
+    /// Numbers are void, and what was said by them.
+    void forgetNumbers();
     void pump();
     void flushStreams();
     void fail(const QString& why);
     void lose(LineFault fault, const QString& detail);
-    void watchPort();
+    void watchPort(std::chrono::milliseconds interval);
+    void lookForPort();
 
     LineAddress address_;
+    quint64 opening_ = 0;
+    quint64 exploration_ = 0;
     std::unique_ptr<Line> line_;
     std::unique_ptr<SkinClient> client_;
     QTimer timer_;
     QTimer flush_;
     QTimer watch_;              ///< for a port that was lost
     bool isReturning_ = false;  ///< it was lost, and has not answered since
+    bool isExploreDue_ = false;
+    int restarts_ = 0;  ///< times in a row that cells have restarted soon after they had before
+    Time restarted_{};
     bool streamsRest_ = false;
     bool streamsTouch_ = false;
     std::map<CellNumber, RestReading> readings_;

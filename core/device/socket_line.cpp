@@ -5,6 +5,8 @@
 namespace skincal {
 namespace {
 
+constexpr int kLastWords = 100;  // ms, for what waits to be sent as it is closed
+
 LineFault faultOf(QAbstractSocket::SocketError error) {
     switch (error) {
         case QAbstractSocket::ConnectionRefusedError:
@@ -44,6 +46,11 @@ void SocketLine::open() {
 
 void SocketLine::close() {
     const QSignalBlocker quiet(socket_);
+    if (socket_.state() == QAbstractSocket::ConnectedState) {
+        socket_.disconnectFromHost();  // once everything is sent
+        if (socket_.state() != QAbstractSocket::UnconnectedState)
+            socket_.waitForDisconnected(kLastWords);
+    }
     socket_.abort();
 }
 

@@ -11,6 +11,9 @@
 namespace skincal {
 namespace {
 
+/// Samples that a window holds, however slowly they come.
+constexpr std::size_t kFewest = 3;
+
 /// Sums of one module's readings.
 struct Moments {
     int count = 0;
@@ -43,8 +46,22 @@ void StillnessMeter::add(std::chrono::microseconds time, std::span<const std::op
     if (!samples_.empty() && time <= samples_.back().time)
         clear();  // the device's clock began anew
     samples_.push_back({time, {acceleration.begin(), acceleration.end()}});
-    while (samples_.front().time < time - kKept)
+    while (samples_.size() > kFewest && samples_.front().time < time - kKept)
         samples_.pop_front();
+}
+
+std::chrono::microseconds StillnessMeter::period() const {
+    if (samples_.size() < kFewest)
+        return {};
+    auto shortest = std::chrono::microseconds::max();
+    for (std::size_t i = samples_.size() + 1 - kFewest; i < samples_.size(); ++i)
+        shortest = std::min(shortest, samples_[i].time - samples_[i - 1].time);
+    return shortest;
+}
+
+std::chrono::microseconds StillnessMeter::window() const {
+    // They come a little early or late.
+    return std::max<std::chrono::microseconds>(options_.window, (kFewest - 1) * period() * 5 / 4);
 }
 
 void StillnessMeter::clear() {
@@ -55,9 +72,10 @@ std::optional<double> StillnessMeter::movement() const {
     if (samples_.empty())
         return std::nullopt;
     const auto newest = samples_.back().time;
+    const auto length = window();
     const auto oldest = std::find_if(samples_.begin(), samples_.end(),
-                                     [&](const Sample& sample) { return sample.time >= newest - options_.window; });
-    if (newest - oldest->time < options_.window / 2)
+                                     [&](const Sample& sample) { return sample.time >= newest - length; });
+    if (newest - oldest->time < length / 2)
         return std::nullopt;
     std::vector<Moments> moments(modules_.size());
     for (auto sample = oldest; sample != samples_.end(); ++sample) {

@@ -19,7 +19,9 @@ struct StillnessOptions {
     [[nodiscard]] bool validate() const { return window.count() > 0 && restsBelow > 0; }
 };
 
-/// Watches all accelerometers at once: does the body rest, and what did they read meanwhile?
+/// Watches all accelerometers at once: does the body rest, and what did they read meanwhile? Where samples are so far
+/// apart that the usual window would not hold three, as those of many modules on a slow line are, it is as long as
+/// they take.
 class StillnessMeter {
   public:
     /// Throws std::logic_error where options are out of range.
@@ -29,6 +31,9 @@ class StillnessMeter {
     void add(std::chrono::microseconds time, std::span<const std::optional<Vector3d>> acceleration);
     void clear();
 
+    /// Up to the newest sample.
+    [[nodiscard]] std::chrono::microseconds window() const;
+
     /// How much readings have scattered during the window, standard deviation per axis, rms over the modules, m/s^2.
     /// Nothing where what came during the window spans less than half of it: at the beginning, after a gap.
     [[nodiscard]] std::optional<double> movement() const;
@@ -36,8 +41,8 @@ class StillnessMeter {
 
     /// Mean of each module since `from`, with the standard deviation of that mean and how many samples it is of;
     /// modules with fewer than two samples have none. No standard deviation where it is below kSmallestSigma: a sensor
-    /// whose steps are coarser than its noise reads the same again and again and still is not exact. At most kKept is
-    /// remembered.
+    /// whose steps are coarser than its noise reads the same again and again and still is not exact. What is older than
+    /// kKept is forgotten, but for the few newest.
     [[nodiscard]] std::vector<GravityReading> meansSince(std::chrono::microseconds from, int pose) const;
 
     static constexpr std::chrono::seconds kKept{3};
@@ -48,6 +53,9 @@ class StillnessMeter {
         std::chrono::microseconds time{};
         std::vector<std::optional<Vector3d>> acceleration;
     };
+
+    /// Shortest time between samples, of the few newest: gaps are none of it. Zero before there are three.
+    [[nodiscard]] std::chrono::microseconds period() const;
 
     std::vector<ModuleId> modules_;
     StillnessOptions options_;

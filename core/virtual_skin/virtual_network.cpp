@@ -133,7 +133,8 @@ void VirtualNetwork::boot(Cell& cell) {
     };
     // Three of the longest frames, an acknowledgement and the way there and back.
     const auto timeout = duration(3 * SKIN_MAX_ENCODED) + 2 * faults_.latency + Time(1000);
-    skin_cell_init(&cell.cell, &cell.board, &cell.identity, cell.ports, static_cast<std::uint32_t>(timeout.count()));
+    skin_cell_init(&cell.cell, &cell.board, &cell.identity, cell.ports, static_cast<std::uint32_t>(timeout.count()),
+                   static_cast<std::uint32_t>(random_()));
     cell.wakeAt = Time::max();
     wakeAfter(cell, 0);
 }

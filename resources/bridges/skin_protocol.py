@@ -176,8 +176,8 @@ class Link:
         steps = 0 if self.highest is None else ahead(frame.sequence, self.highest)
         if self.highest is None or steps < -WINDOW and frame.compatible & FIRST:  # the sender has started (anew)
             self.highest, self.came, new = frame.sequence, 0, True
-        elif steps < -WINDOW:
-            return False
+        elif steps < -WINDOW:  # too old: it is acknowledged, or it would come again
+            new = False
         elif steps > 0:
             self.came = (self.came << 1 | 1) << steps - 1 & 0xFFFFFFFF if steps <= WINDOW else 0
             self.highest, new = frame.sequence, True
@@ -415,11 +415,14 @@ class Bridge:
         except (ValueError, TypeError, AttributeError):  # a field of another kind than it should be
             self._refuse(frame, MALFORMED)
 
+    def _hello(self) -> None:
+        self._local(HELLO, uint(1, 1) + uint(2, 1) + uint(3, 0b1111 if self.touch else 0b1101)
+                    + fixed(4, "<I", SCHEMA) + block(5, self.name.encode()[:100]))
+
     def _obey_local(self, frame: Frame, message: dict, now: float) -> None:
         if frame.type == HELLO:
             if message.get(6):  # please answer
-                self._local(HELLO, uint(1, 1) + uint(2, 1) + uint(3, 0b1111 if self.touch else 0b1101)
-                            + fixed(4, "<I", SCHEMA) + block(5, self.name.encode()[:100]))
+                self._hello()
         elif frame.type == EXPLORE:
             new = 0 < (frame.epoch - self.epoch & 0xFF) < 128 or not self.epoch
             if new:
@@ -427,6 +430,8 @@ class Bridge:
                 self._begin(frame.epoch)
             if frame.epoch == self.epoch:
                 self._local(EXPLORED, uint(1, 1) + uint(2, self.root[1]))
+            else:  # of a computer that was never told how far this is
+                self._hello()
             if new:
                 self._local(SUBTREE, uint(1, len(self.cells)))
         elif frame.type in (ASSIGN, NEIGHBOUR):

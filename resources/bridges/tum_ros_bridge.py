@@ -8,7 +8,7 @@ Assumes ROS 1, and of the driver (package tum_ics_skin_msgs; check yours with ro
   the topic             carries arrays `data` of `cellId`, `acc` (g, specific force: +1 upward at rest), `prox`
                         (0 to 1), `force` (three; --newtons is what 1 means) and `temp` (degrees Celsius). It has to be
                         there: make it with createSkinCellDataPub and enableSkinCellDataPub.
-The application waits two seconds for a first word: driver and topic have to be up before it starts this.
+The application waits fifteen seconds for a first word: driver and topic have to be up before it starts this.
 The computer is taken to hang on a free port of the first cell (--root). The driver knows no unique ids: they are made
 of --skin, which has to be another one for each skin, and the driver's ids.
 """

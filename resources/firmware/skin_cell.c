@@ -9,12 +9,12 @@
 enum { NEED_FOR_OWN = 2 }; /* buffers that must be free before a cell sends what is its own: others' words pass first */
 
 void skin_cell_init(skin_cell* cell, const skin_board* board, const skin_identity* identity, int ports,
-                    uint32_t timeout_us) {
+                    uint32_t timeout_us, uint32_t seed) {
     memset(cell, 0, sizeof *cell);
     cell->board = board;
     cell->identity = identity;
     /* Anywhere but where a neighbour may still remember it. */
-    const uint32_t start = skin_crc32(identity->unique_id, sizeof identity->unique_id) ^ board->now_us(board->context);
+    const uint32_t start = skin_crc32(identity->unique_id, sizeof identity->unique_id) ^ seed;
     skin_link_init(&cell->link, board, ports, timeout_us, (uint16_t)(start ^ start >> 16));
     cell->tree.parent = -1;
     board->led(board->context, 0, 0, 0);
@@ -59,19 +59,23 @@ static bool refuse(skin_cell* cell, int port, uint8_t type, skincal_wire_Refused
     return skin_say(cell, (uint8_t)(1u << port), TYPE_REFUSED, SKIN_LOCAL, skincal_wire_Refused_fields, &refused);
 }
 
-static bool hello(skin_cell* cell, int port, const uint8_t* payload, size_t length) {
-    skincal_wire_Hello theirs = skincal_wire_Hello_init_zero;
-    if (!skin_parse(skincal_wire_Hello_fields, &theirs, payload, length))
-        return refuse(cell, port, TYPE_HELLO, skincal_wire_Refused_Reason_MALFORMED);
-    if (!theirs.please_answer)
-        return true;
+bool skin_say_hello(skin_cell* cell, int port, bool please_answer) {
     skincal_wire_Hello ours = skincal_wire_Hello_init_zero;
     ours.oldest_version = SKIN_VERSION;
     ours.newest_version = SKIN_VERSION;
     ours.capabilities = (cell->board->acceleration ? 1u : 0u) | (cell->board->tactile ? 2u : 0u) | 4u | 8u;
     ours.schema = cell->identity->schema;
+    ours.please_answer = please_answer;
     memcpy(ours.name, cell->identity->name, sizeof ours.name);
     return skin_say(cell, (uint8_t)(1u << port), TYPE_HELLO, SKIN_LOCAL, skincal_wire_Hello_fields, &ours);
+}
+
+static bool hello(skin_cell* cell, int port, const skin_header* header, const uint8_t* payload, size_t length) {
+    skincal_wire_Hello theirs = skincal_wire_Hello_init_zero;
+    if (!skin_parse(skincal_wire_Hello_fields, &theirs, payload, length))
+        return refuse(cell, port, TYPE_HELLO, skincal_wire_Refused_Reason_MALFORMED);
+    skin_tree_hear_epoch(cell, port, header->epoch);
+    return !theirs.please_answer || skin_say_hello(cell, port, false);
 }
 
 static void finish_tally(skin_cell* cell) {
@@ -88,6 +92,9 @@ static void tally(skin_cell* cell, const uint8_t* payload, size_t length) {
     skincal_wire_Tally query = skincal_wire_Tally_init_zero;
     if (!skin_parse(skincal_wire_Tally_fields, &query, payload, length))
         return;
+    if (cell->tally.asked && (int16_t)((uint16_t)query.query - cell->tally.query) < 0)
+        return; /* a newer one has overtaken it */
+    cell->tally.asked = true;
     cell->tally.query = (uint16_t)query.query;
     cell->tally.pattern = (uint16_t)query.pattern;
     cell->tally.waiting = cell->tree.children;
@@ -174,14 +181,16 @@ static bool from_neighbour(skin_cell* cell, int port, const skin_header* header,
                            size_t length) {
     switch (header->type) {
         case TYPE_HELLO:
-            return hello(cell, port, payload, length);
+            return hello(cell, port, header, payload, length);
         case TYPE_TALLIED:
-            tallied(cell, port, payload, length);
+            if (header->epoch == cell->tree.epoch)
+                tallied(cell, port, payload, length);
             return true;
         case TYPE_BOOTED:
             /* Whatever was agreed with who was there before is void; the computer has to explore again. */
             skin_link_drop_port(&cell->link, port);
             cell->tree.booted |= (uint8_t)(1u << port);
+            cell->tree.restarted |= (uint8_t)(1u << port);
             return true;
         case TYPE_EXPLORE:
         case TYPE_EXPLORED:

@@ -2,7 +2,7 @@
  * transmitters of its ports, an LED and sensors (skin_board), hands over what its ports receive and calls
  * skin_cell_run. Everything lives in skin_cell, some 6 KiB; no heap, no globals, for one thread or interrupt level.
  *
- *     skin_cell_init(&cell, &board, &identity, 4, 5000);
+ *     skin_cell_init(&cell, &board, &identity, 4, 5000, seed);
  *     for (;;) {
  *         for each byte that port p received: skin_cell_receive(&cell, p, &byte, 1);
  *         skin_cell_run(&cell);
@@ -44,6 +44,8 @@ typedef struct {
     uint16_t number; /* 0 none */
     uint8_t booted;  /* ports behind which somebody has booted, of which the computer was not told yet */
     uint8_t alive;   /* ports on which a neighbour takes part in this exploration */
+    uint8_t restarted; /* ports behind which somebody has booted since this exploration began */
+    uint8_t newest;    /* epoch of neighbours that will not take part in this one, which is no newer; 0: there are none */
     uint32_t introduced_at;
     uint8_t heard; /* ports whose neighbour has told its number */
     uint16_t neighbour[SKIN_MAX_PORTS];
@@ -81,6 +83,7 @@ typedef struct {
     uint16_t pattern;
     uint8_t waiting; /* bit per child port */
     uint32_t sum;
+    bool asked; /* since the cell was numbered: whether `query` is that of a query */
     bool open;
 } skin_tally;
 
@@ -106,6 +109,7 @@ typedef struct {
     uint32_t measure_until;
     uint8_t change_pct;
     uint8_t told[20]; /* last tactile sample sent */
+    bool has_told;    /* since the stream was ordered */
 } skin_senses;
 
 typedef struct {
@@ -119,8 +123,11 @@ typedef struct {
     uint8_t to_report; /* bit per subject */
 } skin_cell;
 
+/* timeout_us: at least what three of the longest frames take.
+ * seed: another one at each start, or neighbours take a cell that has just restarted for what it was, and its first
+ * frames for such as they have had: noise of a converter, a count of starts in memory that lasts. */
 void skin_cell_init(skin_cell* cell, const skin_board* board, const skin_identity* identity, int ports,
-                    uint32_t timeout_us);
+                    uint32_t timeout_us, uint32_t seed);
 
 /* Bytes that a port has received. */
 void skin_cell_receive(skin_cell* cell, int port, const uint8_t* bytes, size_t count);

@@ -34,6 +34,8 @@ enum {
 bool skin_say(skin_cell* cell, uint8_t ports, uint8_t type, uint8_t direction, const pb_msgdesc_t* fields,
               const void* message);
 bool skin_parse(const pb_msgdesc_t* fields, void* message, const uint8_t* payload, size_t length);
+/* Who this is, and by the header which exploration it is in. */
+bool skin_say_hello(skin_cell* cell, int port, bool please_answer);
 
 static inline bool skin_reached(uint32_t now, uint32_t when) {
     return (int32_t)(now - when) >= 0;
@@ -49,6 +51,8 @@ static inline uint32_t skin_until(uint32_t wait, uint32_t now, uint32_t when) {
 
 /* Each takes what is for it and returns false where it can't for want of a buffer; the frame then comes again. */
 bool skin_tree_receive(skin_cell* cell, int port, const skin_header* header, const uint8_t* payload, size_t length);
+/* The exploration that a neighbour says it is in. */
+void skin_tree_hear_epoch(skin_cell* cell, int port, uint8_t epoch);
 uint32_t skin_tree_run(skin_cell* cell);
 /* In how many us all neighbours have said their numbers, or are not waited for any longer. */
 uint32_t skin_tree_introduced(const skin_cell* cell);

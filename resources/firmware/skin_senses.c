@@ -60,8 +60,10 @@ void skin_senses_receive(skin_cell* cell, const skin_header* header, const uint8
         /* Not all cells at once. */
         const uint64_t share = (uint64_t)cell->tree.number * 0x9E3779B1u & 0xFFFFFFFFu;
         senses->next_us[subject] = now + (uint32_t)(share * senses->period_us[subject] >> 32);
+        if (subject != skincal_wire_Subject_TACTILE)
+            return;
         senses->change_pct = (uint8_t)(told.change_pct < 100 ? told.change_pct : 100);
-        memset(senses->told, 0, sizeof senses->told);
+        senses->has_told = false;
     }
 }
 
@@ -103,17 +105,23 @@ static void tactile_sample(skin_cell* cell, uint8_t sample[20]) {
     put(sample + 10, (int)(temperature * 100));
 }
 
-/* By more than the share of what a value can be: proximity of 65536, force of 10 N. */
-static bool changed(const uint8_t* then, const uint8_t* now, uint8_t percent) {
-    if (percent == 0)
+/* By more than the share of what a value can be: proximity of 65535, force of 10 N. */
+static bool changed(const skin_senses* senses, const uint8_t* now) {
+    if (senses->change_pct == 0 || !senses->has_told)
         return true;
+    const uint8_t* then = senses->told;
     for (int i = 1; i < 5; ++i) {
         const int32_t difference = (then[2 * i] | then[2 * i + 1] << 8) - (now[2 * i] | now[2 * i + 1] << 8);
-        const int32_t range = i == 1 ? 65536 : 10000;
-        if ((difference < 0 ? -difference : difference) * 100 >= percent * range)
+        const int32_t range = i == 1 ? 65535 : 10000;
+        if ((difference < 0 ? -difference : difference) * 100 >= senses->change_pct * range)
             return true;
     }
     return false;
+}
+
+static void remember(skin_senses* senses, const uint8_t* sample) {
+    memcpy(senses->told, sample, sizeof senses->told);
+    senses->has_told = true;
 }
 
 /* Whether its turn has come; takes it. */
@@ -135,12 +143,12 @@ void skin_senses_join(skin_cell* cell, skin_buffer* passing) {
         !is_due(senses, skincal_wire_Subject_TACTILE, skin_now(cell)))
         return;
     tactile_sample(cell, sample);
-    if (!changed(senses->told, sample, senses->change_pct))
+    if (!changed(senses, sample))
         return;
     memcpy(passing->payload + passing->length, sample, 20);
     passing->payload[1] = (uint8_t)(passing->payload[1] + 20);
     passing->length = (uint8_t)(passing->length + 20);
-    memcpy(senses->told, sample, 20);
+    remember(senses, sample);
 }
 
 static bool send_tactile(skin_cell* cell, bool only_changed) {
@@ -148,13 +156,13 @@ static bool send_tactile(skin_cell* cell, bool only_changed) {
     if (!cell->board->tactile)
         return true;
     tactile_sample(cell, tactile.samples.bytes);
-    if (only_changed && !changed(cell->senses.told, tactile.samples.bytes, cell->senses.change_pct))
+    if (only_changed && !changed(&cell->senses, tactile.samples.bytes))
         return true;
     tactile.samples.size = 20;
     if (!skin_say(cell, (uint8_t)(1u << cell->tree.parent), TYPE_TACTILE, SKIN_UP, skincal_wire_Tactile_fields,
                   &tactile))
         return false;
-    memcpy(cell->senses.told, tactile.samples.bytes, 20);
+    remember(&cell->senses, tactile.samples.bytes);
     return true;
 }
 

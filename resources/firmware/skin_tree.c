@@ -19,16 +19,29 @@ static bool answer(skin_cell* cell, int port, bool child) {
     return skin_say(cell, bit(port), TYPE_EXPLORED, SKIN_LOCAL, skincal_wire_Explored_fields, &explored);
 }
 
+static bool is_newer(uint8_t epoch, uint8_t than) {
+    return (int8_t)(epoch - than) > 0;
+}
+
+static void note_epoch(skin_tree* tree, uint32_t epoch) {
+    if (epoch > 0 && epoch <= 0xFF && !is_newer(tree->newest != 0 ? tree->newest : tree->epoch, (uint8_t)epoch))
+        tree->newest = (uint8_t)epoch;
+}
+
 static bool explore(skin_cell* cell, int port, uint8_t epoch) {
     skin_tree* tree = &cell->tree;
     if (epoch == 0)
         return true;
+    /* Of one that has ended, or of a computer that was never told how far they are: as where the first cell of all,
+     * whom it asked, has restarted since. */
+    const bool is_over = epoch == tree->epoch ? (tree->restarted & bit(port)) != 0 : !is_newer(epoch, tree->epoch);
+    /* The one that it is in is void where neighbours did not take part: then any other will do. */
+    if (tree->epoch != 0 && is_over && (epoch == tree->epoch || tree->newest == 0))
+        return skin_say_hello(cell, port, false);
     if (epoch == tree->epoch) {
         tree->alive |= bit(port);
         return answer(cell, port, port == tree->parent);
     }
-    if (tree->epoch != 0 && (int8_t)(epoch - tree->epoch) < 0)
-        return true; /* of one that has ended */
     skin_link_drop_explored(&cell->link);
     if (skin_link_room(&cell->link) < 2)
         return false;
@@ -40,6 +53,7 @@ static bool explore(skin_cell* cell, int port, uint8_t epoch) {
     tree->give_up_at = skin_now(cell) + ANSWER_US;
     cell->to_report = 0;
     cell->tally.open = false;
+    cell->tally.asked = false;
     cell->leds.has_shown = false; /* another computer may number patterns otherwise */
     cell->leds.has_mask = false;
     cell->leds.has_word = false; /* it has another number now */
@@ -83,6 +97,16 @@ static void subtree(skin_cell* cell, int port, const uint8_t* payload, size_t le
     tree->children |= bit(port);
     tree->uncounted &= (uint8_t)~bit(port);
     tree->below[port] = (uint16_t)(theirs.cells < 0xFFFF ? theirs.cells : 0xFFFF);
+    note_epoch(tree, theirs.newest_epoch);
+}
+
+void skin_tree_hear_epoch(skin_cell* cell, int port, uint8_t epoch) {
+    skin_tree* tree = &cell->tree;
+    /* Who was asked to take part and says this instead will not. */
+    if (!(tree->open & bit(port)) || is_newer(tree->epoch, epoch))
+        return;
+    tree->open &= (uint8_t)~bit(port);
+    note_epoch(tree, epoch);
 }
 
 static bool assign(skin_cell* cell, int port, const uint8_t* payload, size_t length) {
@@ -181,7 +205,7 @@ uint32_t skin_tree_run(skin_cell* cell) {
         if (tree->children & bit(p))
             size += tree->below[p];
     tree->size = (uint16_t)(size < 0xFFFF ? size : 0xFFFF);
-    const skincal_wire_Subtree mine = {.cells = size};
+    const skincal_wire_Subtree mine = {.cells = size, .newest_epoch = tree->newest};
     tree->reported = skin_say(cell, bit(tree->parent), TYPE_SUBTREE, SKIN_LOCAL, skincal_wire_Subtree_fields, &mine);
     return tree->reported ? UINT32_MAX : 1000;
 }

@@ -27,7 +27,7 @@ class CellBench {
             *proximity = force[0] = force[1] = force[2] = static_cast<std::uint16_t>(of(self).now_);
         };
         settle();
-        skin_cell_init(&cell_, &board_, &identity_, kPorts, 4000);
+        skin_cell_init(&cell_, &board_, &identity_, kPorts, 4000, 1);
         course_.fill({100, 1, 4, 0});
         if (stage > 0)
             say(0, FrameType::Explore, FrameDirection::Local, "");

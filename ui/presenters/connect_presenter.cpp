@@ -114,6 +114,8 @@ void ConnectPresenter::attachDevice() {
     SkinDevice* device = workbench_.skin();
     state_ = {};
     found_.clear();
+    gone_.clear();
+    strangers_ = 0;
     timer_.stop();
     connect(device, &SkinDevice::opened, this, [this] { handle(connection::Opened{}); });
     connect(device, &SkinDevice::closed, this, [this] { handle(connection::Closed{}); });
@@ -133,9 +135,24 @@ void ConnectPresenter::attachDevice() {
         const bool isExpected = state_.phase == Connection::Phase::Exploring;
         if (isExpected)
             workbench_.session().adoptSkin(skin);
+        compare(skin);
         handle(connection::Explored{});
     });
     emit stateChanged();
+}
+
+void ConnectPresenter::compare(const Skin& skin) {
+    gone_.clear();
+    strangers_ = 0;
+    const auto now = skin.indexById();
+    const auto known = workbench_.session().measured().skin.indexById();
+    for (const auto& [module, index] : known) {
+        if (!now.contains(module))
+            gone_.push_back(module);
+    }
+    std::sort(gone_.begin(), gone_.end());
+    for (const auto& [module, index] : now)
+        strangers_ += known.contains(module) ? 0 : 1;
 }
 
 void ConnectPresenter::handle(const connection::Event& event) {

@@ -38,6 +38,10 @@ class ConnectPresenter : public QObject {
     [[nodiscard]] const LinkModel& links() const { return links_; }
     /// Those that have reported since the exploration began, in that order.
     [[nodiscard]] const std::vector<ModuleId>& found() const { return found_; }
+    /// Modules of the session that the skin, explored anew as something restarted, does not find any more; and how many
+    /// it finds that the session does not know. What was measured stays as it is until somebody connects again.
+    [[nodiscard]] const std::vector<ModuleId>& gone() const { return gone_; }
+    [[nodiscard]] std::size_t strangers() const { return strangers_; }
 
     void chooseDevice(int offer);
     void connectSkin();
@@ -53,6 +57,7 @@ class ConnectPresenter : public QObject {
     void handle(const connection::Event& event);
     void attachDevice();
     void blinkStep();
+    void compare(const Skin& skin);
 
     Workbench& workbench_;
     LinkModel links_;
@@ -61,6 +66,8 @@ class ConnectPresenter : public QObject {
     QTimer timer_;
     QTimer blinkTimer_;
     std::vector<ModuleId> found_;
+    std::vector<ModuleId> gone_;
+    std::size_t strangers_ = 0;
     ModuleId blinks_;
     int blinkSteps_ = 0;
 };

@@ -164,7 +164,7 @@ void PosePresenter::takeSample(const AccelerationSample& sample) {
         up_ = own->normalized();
     pose_capture::Sample event{sample.time, meter_->isAtRest(), true};
     if (event.isAtRest) {
-        const auto means = meter_->meansSince(sample.time - stillness_.window, 0);
+        const auto means = meter_->meansSince(sample.time - meter_->window(), 0);
         event.isNew = !isHeld_ && angleToNearestPose(countingReadings_, means) > kSamePose;
     } else if (meter_->movement()) {
         isHeld_ = false;

@@ -14,16 +14,22 @@ using Severity = Problem::Severity;
 constexpr double kMoved_px = 1.0;
 constexpr std::size_t kFewSpots = 6;  // of fewer, stray ones may be most
 
+constexpr qsizetype kNamed = 8;  // more make no sentence
+
 QString numbersOf(const std::vector<ModuleId>& modules) {
     QStringList numbers;
-    for (const ModuleId module : modules)
+    for (const ModuleId module : modules) {
+        if (numbers.size() == kNamed) {
+            numbers << QStringLiteral("…");
+            break;
+        }
         numbers << QString::number(module.value);
+    }
     return numbers.join(QStringLiteral(", "));
 }
 
 /// By their neighbours, whom the operator can find; by numbers of the network where nobody knows them.
 QString namesOf(const std::vector<SilentModule>& silent) {
-    constexpr qsizetype kNamed = 8;  // more make no sentence
     QStringList names;
     for (const SilentModule& one : silent) {
         if (names.size() == kNamed) {
@@ -199,6 +205,24 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
             problem.modules.insert(problem.modules.end(), one.beside.begin(), one.beside.end());
         problems.push_back(std::move(problem));
     }
+    if (const auto& gone = connection_.gone(); workbench_.isSkinReady() && !gone.empty()) {
+        Problem problem{Severity::Warning,
+                        Step::Connect,
+                        tr("%n modules that were there do not answer any more: %1. Connect again to go on without them",
+                           nullptr, static_cast<int>(gone.size()))
+                            .arg(numbersOf(gone)),
+                        {},
+                        {}};
+        problem.modules = gone;
+        problems.push_back(std::move(problem));
+    }
+    if (workbench_.isSkinReady() && connection_.strangers() > 0)
+        problems.push_back({Severity::Note,
+                            Step::Connect,
+                            tr("%n modules have come that were not there before. Connect again to take them in",
+                               nullptr, static_cast<int>(connection_.strangers())),
+                            {},
+                            {}});
     if (!cameraFailure_.isEmpty())
         problems.push_back({Severity::Error, Step::Camera, cameraFailure_, {}, {}});
     if (workbench_.camera() != nullptr && mayBrightnessChange(workbench_.camera()->controls()))

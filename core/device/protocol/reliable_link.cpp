@@ -38,7 +38,7 @@ void ReliableLink::clear() {
 
 void ReliableLink::receive(std::span<const std::uint8_t> bytes, Time now, const Sink& sink) {
     decoder_.feed(bytes, [&](const FrameHeader& header, std::string_view payload) {
-        if (header.version != FrameHeader::kVersion || header.incompatible != 0) {
+        if (header.version != FrameHeader::kVersion) {
             sink(header, payload);
         } else if (header.type == FrameType::Ack) {
             acknowledged(header, now);
@@ -130,17 +130,37 @@ bool ReliableLink::mayGo(const Outgoing& frame) const {
     return earliest == queue_.end() || ahead(frame.header.sequence, earliest->header.sequence) < kWindow;
 }
 
+ReliableLink::Time ReliableLink::timeFor(std::size_t bytes) const {
+    return Time(static_cast<Time::rep>(1e6 * static_cast<double>(bytes) / options_.bytesPerSecond));
+}
+
+void ReliableLink::sendFrame(Outgoing& frame, Time now, std::vector<std::uint8_t>& bytes) {
+    if (!acknowledged_)
+        frame.header.compatible |= FrameHeader::kFirst;
+    else
+        frame.header.compatible &= static_cast<std::uint8_t>(~FrameHeader::kFirst);
+    if (frame.header.type == FrameType::TimeMark)
+        frame.header.time_us = static_cast<std::uint32_t>((std::max(lineFree_, now) + timeFor(kEmptyFrame)).count());
+    const std::size_t before = bytes.size();
+    appendFrame(frame.header, frame.payload, bytes);
+    lineFree_ = std::max(lineFree_, now) + timeFor(bytes.size() - before);
+    sentAgain_ += frame.tries > 0 ? 1 : 0;
+    underWay_ += frame.tries == 0 ? 1 : 0;
+    frame.due = lineFree_ + options_.timeout * (1 << frame.tries / 4);
+    frame.sent = ++sent_;
+    ++frame.tries;
+}
+
+void ReliableLink::flush(Time now, std::vector<std::uint8_t>& bytes) {
+    for (Outgoing& frame : queue_)
+        sendFrame(frame, now, bytes);
+}
+
 void ReliableLink::poll(Time now, std::vector<std::uint8_t>& bytes) {
-    const auto byteTime = [&](std::size_t count) {
-        return Time(static_cast<Time::rep>(1e6 * static_cast<double>(count) / options_.bytesPerSecond));
-    };
-    const auto wrote = [&](std::size_t before) {
-        lineFree_ = std::max(lineFree_, now) + byteTime(bytes.size() - before);
-    };
     if (owed_ >= kAckAfter || (owed_ > 0 && now >= ackDue_)) {
         const std::size_t before = bytes.size();
         sendAck(bytes);
-        wrote(before);
+        lineFree_ = std::max(lineFree_, now) + timeFor(bytes.size() - before);
     }
     for (std::size_t i = 0; i < queue_.size() && lineFree_ <= now + kAhead;) {
         Outgoing& frame = queue_[i];
@@ -156,21 +176,7 @@ void ReliableLink::poll(Time now, std::vector<std::uint8_t>& bytes) {
             queue_.erase(queue_.begin() + static_cast<std::ptrdiff_t>(i));
             continue;
         }
-        if (!acknowledged_)
-            frame.header.compatible |= FrameHeader::kFirst;
-        else
-            frame.header.compatible &= static_cast<std::uint8_t>(~FrameHeader::kFirst);
-        if (frame.header.type == FrameType::TimeMark)
-            frame.header.time_us =
-                static_cast<std::uint32_t>((std::max(lineFree_, now) + byteTime(kEmptyFrame)).count());
-        const std::size_t before = bytes.size();
-        appendFrame(frame.header, frame.payload, bytes);
-        wrote(before);
-        sentAgain_ += frame.tries > 0 ? 1 : 0;
-        underWay_ += frame.tries == 0 ? 1 : 0;
-        frame.due = lineFree_ + options_.timeout * (1 << frame.tries / 4);
-        frame.sent = ++sent_;
-        ++frame.tries;
+        sendFrame(frame, now, bytes);
         ++i;
     }
 }

@@ -45,6 +45,9 @@ class ReliableLink {
 
     /// Appends what is to be sent now, not more than the line carries by then.
     void poll(Time now, std::vector<std::uint8_t>& bytes);
+    /// Appends all that waits, each once, whatever the line carries and the other side has room for: the last words
+    /// before a line is closed.
+    void flush(Time now, std::vector<std::uint8_t>& bytes);
     /// When to poll again at the latest; nothing where nothing waits.
     [[nodiscard]] std::optional<Time> wakeAt() const;
 
@@ -68,6 +71,8 @@ class ReliableLink {
     void markReceived(std::uint16_t sequence, Time now);
     void acknowledged(const FrameHeader& ack, Time now);
     void sendAck(std::vector<std::uint8_t>& bytes);
+    void sendFrame(Outgoing& frame, Time now, std::vector<std::uint8_t>& bytes);
+    [[nodiscard]] Time timeFor(std::size_t bytes) const;
     [[nodiscard]] bool mayGo(const Outgoing& frame) const;
 
     ReliableLinkOptions options_;

@@ -18,6 +18,8 @@ constexpr SkinClient::Time kTallyEach = 40us;
 constexpr SkinClient::Time kMarkEvery = 10s;
 /// Of silence, until the first cell is asked for a sign of life, and until it counts as gone.
 constexpr SkinClient::Time kQuiet = 250ms;
+/// Whoever boots hears nothing: hello is said again for as long as somebody may come.
+constexpr SkinClient::Time kHelloAgain = 500ms;
 constexpr SkinClient::Time kSilent = 900ms;
 constexpr int kExplorations = 3;
 constexpr int kTallies = 4;
@@ -95,6 +97,12 @@ void SkinClient::forget() {
 void SkinClient::open(Time now, Time patience) {
     phase_ = Phase::Greeting;
     due_ = now + patience;
+    sayHello(now);
+}
+
+void SkinClient::sayHello(Time now) {
+    link_.clear();
+    helloDue_ = now + kHelloAgain;
     wire::Hello hello;
     hello.set_oldest_version(FrameHeader::kVersion);
     hello.set_newest_version(FrameHeader::kVersion);
@@ -162,8 +170,13 @@ void SkinClient::takeLocal(const FrameHeader& header, std::string_view payload, 
         }
         case FrameType::Subtree:
             if (const auto subtree = parse<wire::Subtree>(payload);
-                subtree && header.epoch == epoch_ && phase_ == Phase::Flooding)
-                counted(subtree->cells(), now);
+                subtree && header.epoch == epoch_ && phase_ == Phase::Flooding) {
+                const auto newest = static_cast<std::uint8_t>(subtree->newest_epoch());
+                if (newest != 0)
+                    overtake(newest, now);
+                else
+                    counted(subtree->cells(), now);
+            }
             return;
         case FrameType::Explored:
             // It took us for somebody who came late: some other computer explores, or an old frame was about.
@@ -172,19 +185,30 @@ void SkinClient::takeLocal(const FrameHeader& header, std::string_view payload, 
                 due_ = now;
             return;
         case FrameType::Tallied:
-            tallied(payload, now);
+            if (header.epoch == epoch_)
+                tallied(payload, now);
             return;
         case FrameType::Booted:
             if (phase_ == Phase::Describing || phase_ == Phase::Explored) {
                 phase_ = Phase::Open;
                 forget();
             }
-            if (phase_ != Phase::Closed && phase_ != Phase::Greeting)
+            if (phase_ == Phase::Greeting)
+                sayHello(now);  // the last one came too early
+            else if (phase_ != Phase::Closed)
                 listener_.onRestarted();
             return;
         default:
             return;
     }
+}
+
+void SkinClient::overtake(std::uint8_t epoch, Time now) {
+    epoch_ = epoch;
+    if (++attempts_ < kExplorations)
+        explore(now);
+    else
+        fail(SkinFault::Stalled);
 }
 
 void SkinClient::counted(std::size_t cells, Time now) {
@@ -461,6 +485,8 @@ void SkinClient::poll(Time now, std::vector<std::uint8_t>& bytes) {
                 const auto& received = link_.received();
                 fail(received.frames == 0 && received.bytes > received.empty ? SkinFault::Garbled
                                                                              : SkinFault::NoAnswer);
+            } else if (now >= helloDue_) {
+                sayHello(now);
             }
             break;
         case Phase::Flooding:
@@ -495,11 +521,26 @@ void SkinClient::poll(Time now, std::vector<std::uint8_t>& bytes) {
     link_.poll(now, bytes);
 }
 
+void SkinClient::takeLeave(Time now, std::vector<std::uint8_t>& bytes) {
+    if (phase_ != Phase::Explored)
+        return;
+    shown_.reset();
+    link_.clear();
+    streamRest(std::chrono::milliseconds(0));
+    streamTouch(std::chrono::milliseconds(0));
+    for (Message& message : patternMessages({}, cells_, ++pattern_, words_))
+        send(std::move(message));
+    link_.flush(now, bytes);
+    phase_ = Phase::Closed;
+}
+
 std::optional<SkinClient::Time> SkinClient::wakeAt() const {
     std::optional<Time> wake = link_.wakeAt();
     const auto consider = [&](Time when) { wake = wake ? std::min(*wake, when) : when; };
     if (phase_ == Phase::Greeting || phase_ == Phase::Flooding)
         consider(due_);
+    if (phase_ == Phase::Greeting)
+        consider(helloDue_);
     if (phase_ != Phase::Closed && phase_ != Phase::Greeting)
         consider(std::min(std::max(heard_, pinged_) + kQuiet, heard_ + kSilent));
     if (phase_ == Phase::Describing && info_)

@@ -32,7 +32,7 @@ class SkinClient {
     void poll(Time now, std::vector<std::uint8_t>& bytes);
     [[nodiscard]] std::optional<Time> wakeAt() const;
 
-    /// Says hello: onOpened() or onFault() follows.
+    /// Says hello, again and again: onOpened() or onFault() follows.
     /// @param patience  until nobody is there
     void open(Time now, Time patience = std::chrono::seconds(2));
     /// Gives numbers anew and asks who is there: onCounted(), onCell() again and again, onExplored(); or onFault().
@@ -58,6 +58,10 @@ class SkinClient {
     /// @param change_pct  leave out who has changed by less, in percent of the range
     void streamTouch(std::chrono::milliseconds period, int change_pct = 0);
 
+    /// LEDs off and streams ended, all that there is to say before a line is closed: said once, whatever the line can
+    /// carry. Appends what is to be sent.
+    void takeLeave(Time now, std::vector<std::uint8_t>& bytes);
+
     [[nodiscard]] const ReliableLink& link() const { return link_; }
 
   private:
@@ -80,7 +84,10 @@ class SkinClient {
     void takeCellInfo(CellNumber number, std::string_view payload, Time now);
     void takeRest(CellNumber number, std::string_view payload, Time when, Time now);
     void takeTouches(std::string_view payload, Time when);
+    void sayHello(Time now);
     void counted(std::size_t cells, Time now);
+    /// Some cells are in an exploration than which this one is no newer: once more, with one that is.
+    void overtake(std::uint8_t epoch, Time now);
     void describe(Time now);
     void finishExploration();
     void tallied(std::string_view payload, Time now);
@@ -100,7 +107,8 @@ class SkinClient {
     SkinListener& listener_;
     ReliableLink link_;
     Phase phase_ = Phase::Closed;
-    Time due_{};  ///< of the phase, where something is waited for
+    Time due_{};       ///< of the phase, where something is waited for
+    Time helloDue_{};  ///< while greeting, again
     int attempts_ = 0;
     std::uint8_t epoch_ = 0;
     std::size_t cells_ = 0;

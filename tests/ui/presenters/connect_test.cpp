@@ -65,6 +65,38 @@ TEST(ConnectPresenter, SaysThatTheSkinWasUnplugged) {
     }
 }
 
+TEST(ConnectPresenter, ModulesThatVanishOrComeMeanwhileAreNamedAndNothingIsLost) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin());
+    ASSERT_TRUE(desk.capturePoses(1));
+    const auto says = [&](const QString& text) {
+        for (int row = 0; row < desk.problems.rowCount(); ++row)
+            if (desk.problems.problemAt(row).text.contains(text))
+                return true;
+        return false;
+    };
+    const Skin whole = desk.session().measured().skin;
+    Skin smaller = whole;
+    const ModuleId dead = smaller.modules.back().id;
+    smaller.modules.pop_back();
+    std::erase_if(smaller.links, [&](const Link& link) { return link.a == dead || link.b == dead; });
+    emit desk.workbench.skin()->explored(smaller);
+    EXPECT_EQ(desk.connection.gone(), std::vector{dead});
+    EXPECT_TRUE(says(QStringLiteral("do not answer any more: %1.").arg(dead.value)) ||
+                says(QStringLiteral("does not answer any more: %1.").arg(dead.value)));
+    EXPECT_EQ(desk.session().measured().skin.modules.size(), whole.modules.size()) << "what was measured stays";
+    EXPECT_TRUE(desk.workbench.isSkinReady());
+    Skin larger = whole;
+    larger.modules.push_back(whole.modules.front());
+    larger.modules.back().id = ModuleId(4711);
+    emit desk.workbench.skin()->explored(larger);
+    EXPECT_TRUE(desk.connection.gone().empty());
+    EXPECT_EQ(desk.connection.strangers(), 1U);
+    EXPECT_TRUE(says(QStringLiteral("Connect again to take")));
+    ASSERT_TRUE(desk.connectSkin());
+    EXPECT_EQ(desk.connection.strangers(), 0U);
+}
+
 TEST(ConnectPresenter, ConnectsAgainOnceTheSkinIsBack) {
     Desk desk;
     ASSERT_TRUE(desk.connectSkin());

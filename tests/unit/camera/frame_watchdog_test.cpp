@@ -113,6 +113,16 @@ TEST(FrameWatchdog, RefusesTheSamePictureAgain) {
     });
 }
 
+TEST(FrameWatchdog, PassesBlackPicturesHoweverAlike) {
+    Watched source(1);
+    for (int i = 0; i < 30; ++i) {
+        CameraFrame dark = source.next();
+        dark.image.setTo(16);
+        EXPECT_EQ(source.dog.judge(dark, source.now), std::nullopt) << i;
+        source.last = dark;
+    }
+}
+
 TEST(FrameWatchdog, PassesAPictureThatDiffersInOnePixel) {
     Watched source(1);
     source.run(1);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <QCoreApplication>
 #include <QDir>
+#include <QElapsedTimer>
 #include <QSignalSpy>
 #include <QTemporaryDir>
 #include <set>
@@ -202,6 +204,62 @@ TEST_F(AProtocolSkin, AModuleThatRestartsIsFoundAgainWithoutAWord) {
     }
     EXPECT_EQ(explorations, before) << "nothing has changed that anybody must know";
     EXPECT_FALSE(failure);
+}
+
+TEST_F(AProtocolSkin, CellsThatRestartWhateverIsDoneAreAFailureWithItsReason) {
+    openIt();
+    exploreIt();
+    // Of too weak a supply: whenever it is lit.
+    QTimer weak;
+    QObject::connect(&weak, &QTimer::timeout, &rig, [&] {
+        if (wired->network().led(4) == 0)
+            return;
+        wired->network().restart(4);
+        wired->pump();
+    });
+    weak.start(0);
+    std::vector<LitModule> all;
+    for (const SkinModule& module : explored.modules)
+        all.push_back({module.id, std::nullopt});
+    device.light(all);
+    ASSERT_TRUE(waitFor([&] { return failure.has_value(); }));
+    EXPECT_TRUE(failure->contains(QLatin1String("restart again and again"))) << failure->toStdString();
+}
+
+TEST_F(AProtocolSkin, ClosedItIsDarkAndSilent) {
+    openIt();
+    exploreIt();
+    device.streamAcceleration(true);
+    device.streamTactile(true);
+    std::vector<LitModule> all;
+    for (const SkinModule& module : explored.modules)
+        all.push_back({module.id, std::nullopt});
+    ASSERT_TRUE(light(all));
+    EXPECT_EQ(shining().size(), all.size());
+    device.close();
+    ASSERT_TRUE(waitFor([&] { return rig.litAt(RigClock::Time::max()).empty(); }));
+    // What was under way is given up after a while, and nothing new comes.
+    std::uint64_t sent = 0;
+    QElapsedTimer quiet;
+    quiet.start();
+    ASSERT_TRUE(waitFor([&] {
+        if (std::exchange(sent, wired->network().bytesSent()) != wired->network().bytesSent())
+            quiet.restart();
+        return quiet.elapsed() > 1500;
+    }));
+}
+
+TEST_F(AProtocolSkin, WhatIsStillSaidOfAnOpeningThatHasEndedDoesNotCount) {
+    for (int round = 0; round < 10; ++round) {
+        device.open();
+        QCoreApplication::processEvents();
+        terminal.close();  // which the device hears of, sooner or later
+        device.close();
+        plug();
+        openIt();
+        device.close();
+    }
+    EXPECT_FALSE(failure) << failure->toStdString();
 }
 
 TEST_F(AProtocolSkin, ASilentPortSaysSo) {

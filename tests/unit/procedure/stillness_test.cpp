@@ -107,6 +107,32 @@ TEST(Stillness, AGapIsNoRest) {
     EXPECT_TRUE(meter.isAtRest());
 }
 
+// Ten thousand modules on a serial line take seconds to say one word each.
+TEST(Stillness, SamplesThatComeSlowlyAreWaitedFor) {
+    for (const Time period : {600ms, 1700ms, 4400ms}) {
+        StillnessMeter meter(someModules(1));
+        Random random(7, "slow");
+        Time time{};
+        const auto next = [&] { return time += period + Time(random.index(100'000)); };
+        // It moves.
+        for (int i = 0; i < 6; ++i) {
+            meter.add(next(), Readings{kGravity * random.direction()});
+            EXPECT_FALSE(meter.isAtRest()) << period.count();
+        }
+        // It rests: what it read before must have left the window.
+        const Time stopped = time;
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_FALSE(meter.isAtRest()) << i;
+            meter.add(next(), Readings{Vector3d::UnitX()});
+        }
+        EXPECT_TRUE(meter.isAtRest()) << period.count();
+        EXPECT_GE(time - meter.window(), stopped);
+        const auto means = meter.meansSince(time - meter.window(), 0);
+        ASSERT_EQ(means.size(), 1U);
+        EXPECT_EQ(means[0].acceleration, Vector3d(Vector3d::UnitX()));
+    }
+}
+
 TEST(Stillness, ModulesThatDoNotAnswerDoNotCount) {
     Random random(3, "missing");
     for (int run = 0; run < 50; ++run) {
@@ -245,8 +271,9 @@ TEST(Stillness, RemembersAsMuchAsItPromises) {
         meter.add(now, Readings{Vector3d::UnitX()});
         if (i % 50 != 0)
             continue;
-        const auto kept =
+        const auto young =
             std::count_if(times.begin(), times.end(), [&](Time time) { return time >= now - StillnessMeter::kKept; });
+        const auto kept = std::max<std::ptrdiff_t>(young, std::min<std::ptrdiff_t>(3, std::ssize(times)));
         const auto means = meter.meansSince(Time{}, 0);
         EXPECT_EQ(means.empty() ? 1 : *means[0].samples, kept);
     }

@@ -187,6 +187,53 @@ TEST(Explore, EveryComputerIsHeardWhateverWasBefore) {
     }
 }
 
+// Each computer is a new one, which knows what the first cell tells it; and that is nothing where it has restarted
+// since.
+TEST(Explore, ANewComputerFindsAllWhoeverHasRestartedSince) {
+    const Skin skin = gridSkin(5, 4);
+    std::mt19937 random(11);
+    Desk desk;
+    VirtualNetwork network(skin, skin.hostLinks.front(), {}, 1, desk);
+    const auto findsAll = [&](std::uint32_t seed) {
+        Notes notes;
+        SkinClient client(notes, VirtualLine::linkOptions({}), seed);
+        client.open(network.now());
+        bool asked = false;
+        std::vector<std::uint8_t> bytes;
+        for (int i = 0; i < 100'000 && !notes.network && !notes.fault; ++i) {
+            if (notes.opened && !std::exchange(asked, true))
+                client.explore(network.now());
+            bytes.clear();
+            client.poll(network.now(), bytes);
+            network.fromComputer(bytes);
+            network.run(network.now() + 100us);
+            client.receive(network.takeForComputer(), network.now());
+        }
+        return notes.network ? notes.network->cells.size() : 0;
+    };
+    for (std::uint32_t round = 0; round < 200; ++round) {
+        ASSERT_EQ(findsAll(round), 20) << round;
+        network.restart(0);
+        for (std::size_t others = random() % 4; others > 0; --others)
+            network.restart(random() % 20);
+        network.run(network.now() + 200ms);
+    }
+}
+
+TEST(Explore, ABoardThatTakesItsTimeToStartIsWaitedFor) {
+    const Skin skin = gridSkin(3, 2);
+    for (const auto boots : {500ms, 2200ms, 4000ms}) {
+        VirtualLine line(skin, skin.hostLinks.front(), {}, 4);
+        line.network.kill(0);
+        line.client.open(line.network.now(), 5s);
+        line.runFor(boots);
+        ASSERT_FALSE(line.notes.opened);
+        line.network.restart(0);
+        EXPECT_TRUE(line.runUntil([&] { return line.notes.opened.has_value(); }, 300ms)) << boots.count();
+        EXPECT_TRUE(line.explore());
+    }
+}
+
 TEST(Explore, NobodyThereIsSaid) {
     const Skin skin = gridSkin(1, 1);
     VirtualLine line(skin, skin.hostLinks.front(), {}, 1);

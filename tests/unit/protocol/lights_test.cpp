@@ -80,6 +80,32 @@ TEST(Lights, WhatIsShownIsExactlyWhatWasAskedFor) {
     EXPECT_EQ(lit.showing(), expected({{5, 2}}));
 }
 
+TEST(Lights, GoOffAndStreamsEndWhenTheComputerTakesItsLeave) {
+    std::mt19937 random(2);
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        Lit lit(seed);
+        const std::vector<LitCell> set = some(random, lit.line.client.cells(), 60, false);
+        ASSERT_TRUE(lit.light(set));
+        lit.line.client.streamRest(30ms);
+        lit.line.client.streamTouch(10ms);
+        lit.line.runFor(500ms);
+        // In the midst of something else.
+        lit.line.client.light({{3, 7}}, 4711, lit.line.network.now());
+        lit.line.runFor(1ms);
+        std::vector<std::uint8_t> bytes;
+        lit.line.client.takeLeave(lit.line.network.now(), bytes);
+        VirtualNetwork& network = lit.line.network;
+        network.fromComputer(bytes);
+        network.run(network.now() + 200ms);
+        EXPECT_TRUE(lit.showing().empty()) << seed;
+        // What was under way, and nobody acknowledges any more, is given up.
+        network.run(network.now() + 20s);
+        const std::uint64_t sent = network.bytesSent();
+        network.run(network.now() + 5s);
+        EXPECT_EQ(network.bytesSent(), sent) << seed;
+    }
+}
+
 TEST(Lights, OnBadWiresAcknowledgedMeansShown) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
         std::mt19937 random(static_cast<unsigned>(seed));

@@ -35,12 +35,13 @@ inline Skin gridSkin(std::size_t columns, std::size_t rows) {
     return skin;
 }
 
-/// Cells on a desk: gravity along their z, nothing touches them.
+/// Cells on a desk: gravity along their z, and something that touches some of them.
 class Desk : public CellSenses {
   public:
     Vector3d acceleration(std::size_t cell, Time) override { return {0.001 * static_cast<double>(cell), 0, 9.81}; }
     double temperature(std::size_t, Time) override { return 25; }
-    Touch touch(std::size_t cell, Time) override { return {cell % 2 == 0 ? 0.5 : 0.0, {1, 0, 0}}; }
+    /// Every other cell, that is.
+    Touch touch(std::size_t cell, Time) override { return cell % 2 == 0 ? Touch{0.5, {1, 0, 0}} : Touch{}; }
 };
 
 /// Keeps what a client tells.

@@ -41,11 +41,11 @@ typedef struct {
     uint16_t below[SKIN_MAX_PORTS];
     uint16_t first[SKIN_MAX_PORTS]; /* number of the child, once assigned */
     uint16_t size;
-    uint16_t number; /* 0 none */
-    uint8_t booted;  /* ports behind which somebody has booted, of which the computer was not told yet */
-    uint8_t alive;   /* ports on which a neighbour takes part in this exploration */
+    uint16_t number;   /* 0 none */
+    uint8_t booted;    /* ports behind which somebody has booted, of which the computer was not told yet */
+    uint8_t alive;     /* ports on which a neighbour takes part in this exploration */
     uint8_t restarted; /* ports behind which somebody has booted since this exploration began */
-    uint8_t newest;    /* epoch of neighbours that will not take part in this one, which is no newer; 0: there are none */
+    uint8_t newest; /* epoch of neighbours that will not take part in this one, which is no newer; 0: there are none */
     uint32_t introduced_at;
     uint8_t heard; /* ports whose neighbour has told its number */
     uint16_t neighbour[SKIN_MAX_PORTS];

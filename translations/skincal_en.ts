@@ -145,6 +145,13 @@
             <numerusform>%n modules have come that were not there before. Connect again to take them in</numerusform>
         </translation>
     </message>
+    <message numerus="yes">
+        <source>%n modules did not show the last light they were told to: %1</source>
+        <translation>
+            <numerusform>%n module did not show the last light it was told to: %1</numerusform>
+            <numerusform>%n modules did not show the last light they were told to: %1</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>skincal::ScanPage</name>

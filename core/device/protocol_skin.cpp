@@ -43,6 +43,14 @@ ProtocolSkin::ProtocolSkin(LineAddress address, std::vector<ModuleTemplate> temp
         if (state_ == State::Open)
             emit lightShown(token);
     });
+    connect(worker_, &SkinWorker::notShown, this, [this](const std::vector<CellNumber>& dark) {
+        std::vector<ModuleId> modules;
+        for (const CellNumber cell : dark)
+            if (const auto module = moduleOf_.find(cell); module != moduleOf_.end())
+                modules.push_back(module->second);
+        if (state_ == State::Open)
+            emit lightMissed(modules);
+    });
     connect(worker_, &SkinWorker::cameBack, this, [this] {
         if (state_ == State::Closed)
             emit cameBack();

@@ -91,6 +91,8 @@ class SkinDevice : public QObject {
     void accelerationArrived(const skincal::AccelerationSample& sample);
     void tactileArrived(const skincal::TactileSample& sample);
     void lightShown(std::uint64_t token);
+    /// These don't vouch for having latched the newest command, however often it was repeated.
+    void lightMissed(const std::vector<skincal::ModuleId>& dark);
     /// What had failed as it was unplugged is there again: open() may work now.
     void cameBack();
 };

@@ -297,7 +297,8 @@ void SkinWorker::onShown(std::uint64_t token) {
     emit shown(token);
 }
 
-void SkinWorker::onNotShown(std::uint64_t /*token*/, std::size_t /*shown*/) {
+void SkinWorker::onNotShown(std::uint64_t /*token*/, std::span<const CellNumber> dark) {
+    emit notShown({dark.begin(), dark.end()});
     // Whoever waits for the light has a timeout. Cells that don't answer any more have to be looked for.
     forgetNumbers();
     emit numbersLost();

@@ -48,6 +48,8 @@ class SkinWorker : public QObject, private SkinListener {
     /// A cell has restarted: numbers are void; explored() follows.
     void numbersLost();
     void shown(quint64 token);
+    /// Cells that don't vouch for having shown what they were told; numbersLost() follows.
+    void notShown(const std::vector<skincal::CellNumber>& dark);
     void accelerationCame(const std::vector<skincal::RestReading>& readings, qint64 time_us);
     /// What was lost is there again, or is worth another try.
     void cameBack();
@@ -63,7 +65,7 @@ class SkinWorker : public QObject, private SkinListener {
     void onExplored(const SkinNetwork& network) override;
     void onRestarted() override;
     void onShown(std::uint64_t token) override;
-    void onNotShown(std::uint64_t token, std::size_t shown) override;
+    void onNotShown(std::uint64_t token, std::span<const CellNumber> dark) override;
     void onAcceleration(const RestReading& reading, Time time) override;
     void onRest(std::span<const RestReading> readings, std::span<const CellNumber> missing) override;
     void onTouch(std::span<const CellTouch> touches, Time time) override;

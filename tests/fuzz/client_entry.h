@@ -37,7 +37,7 @@ class Sceptic : public SkinListener {
     }
     void onRestarted() override {}
     void onShown(std::uint64_t token) override { answerLight(token); }
-    void onNotShown(std::uint64_t token, std::size_t) override { answerLight(token); }
+    void onNotShown(std::uint64_t token, std::span<const CellNumber>) override { answerLight(token); }
     void onAcceleration(const RestReading& reading, Time) override { checkReading(reading); }
     void onRest(std::span<const RestReading> readings, std::span<const CellNumber> missing) override {
         std::set<CellNumber> there;

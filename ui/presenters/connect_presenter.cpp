@@ -116,6 +116,7 @@ void ConnectPresenter::attachDevice() {
     found_.clear();
     gone_.clear();
     strangers_ = 0;
+    dark_.clear();
     timer_.stop();
     connect(device, &SkinDevice::opened, this, [this] { handle(connection::Opened{}); });
     connect(device, &SkinDevice::closed, this, [this] { handle(connection::Closed{}); });
@@ -127,6 +128,12 @@ void ConnectPresenter::attachDevice() {
         if (state_.phase == Connection::Phase::Lost)
             connectSkin();
     });
+    const auto setDark = [this](const std::vector<ModuleId>& dark) {
+        if (std::exchange(dark_, dark) != dark)
+            emit stateChanged();
+    };
+    connect(device, &SkinDevice::lightMissed, this, setDark);
+    connect(device, &SkinDevice::lightShown, this, [setDark] { setDark({}); });
     connect(device, &SkinDevice::moduleFound, this, [this](ModuleId module) {
         found_.push_back(module);
         handle(connection::ModuleFound{});

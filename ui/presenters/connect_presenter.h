@@ -42,6 +42,8 @@ class ConnectPresenter : public QObject {
     /// it finds that the session does not know. What was measured stays as it is until somebody connects again.
     [[nodiscard]] const std::vector<ModuleId>& gone() const { return gone_; }
     [[nodiscard]] std::size_t strangers() const { return strangers_; }
+    /// Modules that did not show the last light that was commanded.
+    [[nodiscard]] const std::vector<ModuleId>& dark() const { return dark_; }
 
     void chooseDevice(int offer);
     void connectSkin();
@@ -68,6 +70,7 @@ class ConnectPresenter : public QObject {
     std::vector<ModuleId> found_;
     std::vector<ModuleId> gone_;
     std::size_t strangers_ = 0;
+    std::vector<ModuleId> dark_;
     ModuleId blinks_;
     int blinkSteps_ = 0;
 };

@@ -216,6 +216,17 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
         problem.modules = gone;
         problems.push_back(std::move(problem));
     }
+    if (const auto& dark = connection_.dark(); workbench_.isSkinReady() && !dark.empty()) {
+        Problem problem{
+            Severity::Warning,
+            Step::Connect,
+            tr("%n modules did not show the last light they were told to: %1", nullptr, static_cast<int>(dark.size()))
+                .arg(numbersOf(dark)),
+            {},
+            {}};
+        problem.modules = dark;
+        problems.push_back(std::move(problem));
+    }
     if (workbench_.isSkinReady() && connection_.strangers() > 0)
         problems.push_back({Severity::Note,
                             Step::Connect,

@@ -91,6 +91,7 @@ void SkinClient::forget() {
     info_.reset();
     rest_.reset();
     shown_.reset();
+    latched_.reset();
     link_.clear();
 }
 
@@ -241,6 +242,9 @@ void SkinClient::takeFromCell(const FrameHeader& header, std::string_view payloa
         case FrameType::Rest:
             takeRest(header.first, payload, unwrap(header.time_us, now), now);
             return;
+        case FrameType::Latched:
+            takeLatched(header.first, payload, now);
+            return;
         case FrameType::Tactile:
             takeTouches(payload, unwrap(header.time_us, now));
             return;
@@ -308,6 +312,20 @@ void SkinClient::finishExploration() {
     listener_.onExplored(network_);
 }
 
+void SkinClient::pollLatched(Time now) {
+    if (!latched_)
+        return;
+    if (!latched_->isOver()) {
+        pollCells(wire::LATCHED, latched_, now);
+        return;
+    }
+    const std::vector<CellNumber> silent = std::exchange(latched_, std::nullopt)->missing();
+    const std::uint64_t token = std::exchange(shown_, std::nullopt)->token;
+    dark_.insert(dark_.end(), silent.begin(), silent.end());
+    std::sort(dark_.begin(), dark_.end());
+    listener_.onNotShown(token, dark_);
+}
+
 void SkinClient::pollCells(int subject, std::optional<CellPoll>& poll, Time now) {
     if (link_.waiting() > 16)
         return;
@@ -337,14 +355,15 @@ void SkinClient::light(const std::vector<LitCell>& lit, std::uint64_t token, Tim
         for (Message& message : words_.messages(cells_))
             send(std::move(message));
     wordsTold_ = true;
-    shown_ = Shown{token, lit, ++pattern_, 0, 0, 0, now, when};
+    shown_ = Shown{token, lit, ++pattern_, 0, 0, now, when};
+    latched_.reset();
     showAgain(now);
 }
 
 void SkinClient::showAgain(Time now) {
     if (shown_->tries == kTallies) {
-        const Shown given = *std::exchange(shown_, std::nullopt);
-        listener_.onNotShown(given.token, given.most);
+        dark_.clear();
+        latched_.emplace(allCells(), kPatience, now);
         return;
     }
     // From the second time on, everything anew: masks and words may have been lost on the way.
@@ -370,13 +389,28 @@ void SkinClient::showAgain(Time now) {
 
 void SkinClient::tallied(std::string_view payload, Time now) {
     const auto answer = parse<wire::Tallied>(payload);
-    if (!answer || !shown_ || answer->query() != shown_->query)
+    if (!answer || !shown_ || latched_ || answer->query() != shown_->query)
         return;
-    shown_->most = std::max<std::size_t>(shown_->most, answer->cells());
     if (answer->cells() == cells_)
         listener_.onShown(std::exchange(shown_, std::nullopt)->token);
     else
         showAgain(now);
+}
+
+void SkinClient::takeLatched(CellNumber number, std::string_view payload, Time now) {
+    const auto latched = parse<wire::Latched>(payload);
+    if (!latched || !latched_ || !latched_->answered(number, now))
+        return;
+    const auto behind = static_cast<std::uint16_t>(latched->newest() - shown_->number);
+    if (behind >= 64 || (latched->shown() >> behind & 1U) == 0)
+        dark_.push_back(number);
+}
+
+std::vector<CellNumber> SkinClient::allCells() const {
+    std::vector<CellNumber> all;
+    for (const NetworkCell& cell : network_.cells)
+        all.push_back(cell.number);
+    return all;
 }
 
 void SkinClient::measureRest(std::chrono::milliseconds period, Time now) {
@@ -387,10 +421,7 @@ void SkinClient::measureRest(std::chrono::milliseconds period, Time now) {
     measure.set_run(++run_);
     sendAll(FrameType::Measure, measure.SerializeAsString());
     readings_.clear();
-    std::vector<CellNumber> all;
-    for (const NetworkCell& cell : network_.cells)
-        all.push_back(cell.number);
-    rest_.emplace(std::move(all), kPatience + period, now);
+    rest_.emplace(allCells(), kPatience + period, now);
 }
 
 void SkinClient::streamRest(std::chrono::milliseconds period) {
@@ -501,8 +532,9 @@ void SkinClient::poll(Time now, std::vector<std::uint8_t>& bytes) {
             describe(now);
             break;
         case Phase::Explored:
-            if (shown_ && now >= shown_->due)
+            if (shown_ && !latched_ && now >= shown_->due)
                 showAgain(now);
+            pollLatched(now);
             if (rest_ && !rest_->isOver())
                 pollCells(wire::REST, rest_, now);
             if (rest_ && rest_->isOver()) {
@@ -525,6 +557,7 @@ void SkinClient::takeLeave(Time now, std::vector<std::uint8_t>& bytes) {
     if (phase_ != Phase::Explored)
         return;
     shown_.reset();
+    latched_.reset();
     link_.clear();
     streamRest(std::chrono::milliseconds(0));
     streamTouch(std::chrono::milliseconds(0));
@@ -547,7 +580,9 @@ std::optional<SkinClient::Time> SkinClient::wakeAt() const {
         consider(info_->wakeAt());
     if (phase_ == Phase::Explored) {
         consider(nextMark_);
-        if (shown_)
+        if (latched_)
+            consider(latched_->wakeAt());
+        else if (shown_)
             consider(shown_->due);
         if (rest_)
             consider(rest_->wakeAt());

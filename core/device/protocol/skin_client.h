@@ -73,7 +73,6 @@ class SkinClient {
         std::uint16_t number = 0;
         std::uint16_t query = 0;
         int tries = 0;
-        std::size_t most = 0;  ///< that have shown it, of any tally
         Time due{};
         std::optional<Time> when{};
     };
@@ -90,10 +89,14 @@ class SkinClient {
     void overtake(std::uint8_t epoch, Time now);
     void describe(Time now);
     void finishExploration();
+    void takeLatched(CellNumber number, std::string_view payload, Time now);
     void tallied(std::string_view payload, Time now);
     void showAgain(Time now);
+    void pollLatched(Time now);
     void pollCells(int subject, std::optional<CellPoll>& poll, Time now);
     void listen(Time now);
+    /// Those that have described themselves.
+    [[nodiscard]] std::vector<CellNumber> allCells() const;
     void fail(SkinFault fault);
     /// Everything of the last exploration.
     void forget();
@@ -125,6 +128,8 @@ class SkinClient {
     bool wordsTold_ = true;
     std::uint32_t wordSet_ = 0;
     std::optional<Shown> shown_;
+    std::optional<CellPoll> latched_;  ///< whoever is asked for what it showed: the tallies of shown_ did not add up
+    std::vector<CellNumber> dark_;     ///< of those that answered
     std::uint16_t pattern_ = 0;
     std::uint16_t query_ = 0;
     std::uint32_t run_ = 0;    ///< of measurements at rest

@@ -78,8 +78,8 @@ class SkinListener {
     /// All cells vouch for having shown it.
     virtual void onShown(std::uint64_t token) = 0;
     /// Some don't, or can't be reached.
-    /// @param shown  how many have, of those that answered
-    virtual void onNotShown(std::uint64_t token, std::size_t shown) = 0;
+    /// @param dark  those, each asked by itself
+    virtual void onNotShown(std::uint64_t token, std::span<const CellNumber> dark) = 0;
     virtual void onAcceleration(const RestReading& reading, Time time) = 0;
     /// What measureRest() has come to.
     /// @param missing  those that did not answer

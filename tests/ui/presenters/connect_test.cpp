@@ -93,6 +93,11 @@ TEST(ConnectPresenter, ModulesThatVanishOrComeMeanwhileAreNamedAndNothingIsLost)
     EXPECT_TRUE(desk.connection.gone().empty());
     EXPECT_EQ(desk.connection.strangers(), 1U);
     EXPECT_TRUE(says(QStringLiteral("Connect again to take")));
+    emit desk.workbench.skin()->lightMissed({dead});
+    EXPECT_TRUE(says(QStringLiteral("did not show the last light it was told to: %1").arg(dead.value)) ||
+                says(QStringLiteral("did not show the last light they were told to: %1").arg(dead.value)));
+    emit desk.workbench.skin()->lightShown(1);
+    EXPECT_FALSE(says(QStringLiteral("did not show")));
     ASSERT_TRUE(desk.connectSkin());
     EXPECT_EQ(desk.connection.strangers(), 0U);
 }

@@ -143,10 +143,23 @@ TEST(Lights, ACodedScanIsOneSmallBroadcastPerFrame) {
 }
 
 TEST(Lights, ADeadCellIsNeverTakenForShown) {
-    Lit lit(4);
-    lit.line.network.kill(lit.placeOf(lit.line.client.cells() > 30 ? 30 : 2));
-    EXPECT_FALSE(lit.light({{1, 7}, {2, 7}}));
-    EXPECT_TRUE(lit.line.notes.notShown.contains(lit.token()));
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        Lit lit(seed);
+        const auto cells = static_cast<CellNumber>(lit.line.client.cells());
+        const auto dead = static_cast<CellNumber>(2 + seed * 7 % (cells - 2));
+        std::vector<LitCell> all;
+        for (CellNumber cell = 1; cell <= cells; ++cell)
+            all.push_back({cell, 7});
+        lit.line.network.kill(lit.placeOf(dead));
+        EXPECT_FALSE(lit.light(all));
+        // Named by what each says itself: that one, and whom it cuts off.
+        const std::vector<CellNumber>& dark = lit.line.notes.notShown.at(lit.token());
+        EXPECT_TRUE(std::binary_search(dark.begin(), dark.end(), dead));
+        const auto showing = lit.showing();
+        for (CellNumber cell = 1; cell <= cells; ++cell)
+            EXPECT_NE(showing.contains(cell), std::binary_search(dark.begin(), dark.end(), cell))
+                << seed << ": " << cell;
+    }
 }
 
 TEST(Lights, ANewerPatternOvertakesAnOlder) {

@@ -54,7 +54,9 @@ class Notes : public SkinListener {
     void onExplored(const SkinNetwork& what) override { network = what; }
     void onRestarted() override { ++restarts; }
     void onShown(std::uint64_t token) override { shown = token; }
-    void onNotShown(std::uint64_t token, std::size_t n) override { notShown[token] = n; }
+    void onNotShown(std::uint64_t token, std::span<const CellNumber> dark) override {
+        notShown[token].assign(dark.begin(), dark.end());
+    }
     void onAcceleration(const RestReading& reading, Time) override { streamed.push_back(reading); }
     void onRest(std::span<const RestReading> readings, std::span<const CellNumber> without) override {
         rest.assign(readings.begin(), readings.end());
@@ -72,7 +74,7 @@ class Notes : public SkinListener {
     std::optional<SkinNetwork> network;
     int restarts = 0;
     std::optional<std::uint64_t> shown;
-    std::map<std::uint64_t, std::size_t> notShown;
+    std::map<std::uint64_t, std::vector<CellNumber>> notShown;
     std::vector<RestReading> streamed;
     std::vector<RestReading> rest;
     std::vector<CellNumber> restMissing;

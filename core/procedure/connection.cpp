@@ -10,8 +10,10 @@ using Result = Stepped<Connection, Effect>;
 
 /// Devices give up sooner, with a reason of their own.
 constexpr std::chrono::milliseconds kOpens{20000};
-/// Between two signs of life of a network that is explored.
-constexpr std::chrono::milliseconds kAnswers{15000};
+/// Between two signs of life of a network that is explored. Longer than the protocol's client takes to give up (three
+/// times ten seconds until cells are counted, and some more until one describes itself): it knows better what is wrong
+/// than that nothing came, and its sentence would never be heard.
+constexpr std::chrono::milliseconds kAnswers{35000};
 
 /// Closed in any case: a report may be of an earlier time, and closing what is closed does nothing.
 Result lost(Fault fault, std::size_t found = 0) {

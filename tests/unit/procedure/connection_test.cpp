@@ -4,6 +4,8 @@
 
 #include <deque>
 
+#include "core/device/protocol/skin.pb.h"
+#include "core/device/protocol/skin_client.h"
 #include "core/geometry/random.h"
 #include "tests/unit/procedure/machine_table.h"
 
@@ -17,7 +19,7 @@ using ConnectionRow = Row<Connection, Event, Effect>;
 using Fault = Connection::Fault;
 
 constexpr StartTimer kOpens{std::chrono::milliseconds(20000)};
-constexpr StartTimer kWait{std::chrono::milliseconds(15000)};
+constexpr StartTimer kWait{std::chrono::milliseconds(35000)};
 constexpr std::nullopt_t kNothing = std::nullopt;
 
 Connection stateIn(Connection::Phase phase) {
@@ -99,6 +101,61 @@ TEST(Connection, ALateClosedDoesNotSpoilTheNextConnection) {
     for (const Event& event : std::vector<Event>{Connect{}, Closed{}, Opened{}, ModuleFound{}, Explored{}})
         state = step(state, event).state;
     EXPECT_TRUE((state == Connection{Connected, 1}));
+}
+
+class FaultListener : public SkinListener {
+  public:
+    void onOpened(const std::string&) override { isOpen = true; }
+    void onFault(SkinFault what) override { fault = what; }
+    void onCounted(std::size_t) override {}
+    void onCell(const NetworkCell&) override {}
+    void onExplored(const SkinNetwork&) override {}
+    void onRestarted() override {}
+    void onShown(std::uint64_t) override {}
+    void onNotShown(std::uint64_t, std::size_t) override {}
+    void onAcceleration(const RestReading&, Time) override {}
+    void onRest(std::span<const RestReading>, std::span<const CellNumber>) override {}
+    void onTouch(std::span<const CellTouch>, Time) override {}
+
+    bool isOpen = false;
+    std::optional<SkinFault> fault;
+};
+
+TEST(Connection, LeavesItToTheDeviceToSayThatItsCellsAreSilent) {
+    using namespace std::chrono_literals;
+    // A gateway that says hello, and acknowledges whatever else it is asked.
+    FaultListener listener;
+    SkinClient client(listener, {}, 1);
+    ReliableLink gateway({}, 7);
+    SkinClient::Time now = 1s;
+    std::optional<SkinClient::Time> began;
+    client.open(now);
+    for (; !listener.fault && now < 120s; now += 1ms) {
+        std::vector<std::uint8_t> bytes;
+        client.poll(now, bytes);
+        gateway.receive(bytes, now, [&](const FrameHeader& header, std::string_view) {
+            if (header.type != FrameType::Hello)
+                return;
+            wire::Hello hello;
+            hello.set_oldest_version(FrameHeader::kVersion);
+            hello.set_newest_version(FrameHeader::kVersion);
+            FrameHeader answer;
+            answer.type = FrameType::Hello;
+            gateway.send(answer, hello.SerializeAsString());
+        });
+        bytes.clear();
+        gateway.poll(now, bytes);
+        client.receive(bytes, now);
+        if (listener.isOpen && !began) {
+            began = now;
+            client.explore(now);
+        }
+    }
+    ASSERT_TRUE(began);
+    ASSERT_EQ(listener.fault, SkinFault::Stalled);
+    const auto effects = step(stateIn(Opening), Opened{}).effects;
+    const auto patience = std::get<StartTimer>(effects.back()).after;
+    EXPECT_LT(now - *began, patience) << "nobody would hear what it says";
 }
 
 Event randomEvent(Random& random) {

@@ -7,7 +7,7 @@ packages=(
   git cmake g++ ninja-build ccache pkg-config
   libeigen3-dev libceres-dev libopencv-dev libopencv-contrib-dev libboost-graph-dev libvtk9-dev libcli11-dev nlohmann-json3-dev
   libexpected-dev libfmt-dev libssl-dev libjpeg-dev libpng-dev libtinyxml2-dev libyaml-cpp-dev libx11-dev
-  zlib1g-dev libprotobuf-dev protobuf-compiler nanopb libnanopb-dev
+  zlib1g-dev libglib2.0-dev libprotobuf-dev protobuf-compiler nanopb libnanopb-dev
   qt6-base-dev qt6-serialport-dev libqt6opengl6-dev qt6-tools-dev qt6-tools-dev-tools qt6-l10n-tools libxkbcommon-dev libgl-dev
   qt6-multimedia-dev gstreamer1.0-plugins-base gstreamer1.0-plugins-good libgstreamer1.0-dev
   libgstreamer-plugins-base1.0-dev

@@ -90,7 +90,7 @@ void addExploreCommand(CommandLine& line) {
     command
         ->add_option("device", arguments->skin.device,
                      "A serial port (/dev/ttyUSB0, or with its speed /dev/ttyUSB0@921600), tcp://host:port, or "
-                     "exec:COMMAND, a program that speaks the protocol on its input and output")
+                     "exec:COMMAND, a program that speaks the protocol on its input and output, quoted as in a shell")
         ->required();
     command->add_option(
         "--template", arguments->skin.templates,

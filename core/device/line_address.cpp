@@ -6,6 +6,7 @@
 #include "core/device/program_line.h"
 #include "core/device/serial_line.h"
 #include "core/device/socket_line.h"
+#include "core/device/split_command.h"
 
 namespace skincal {
 namespace {
@@ -60,6 +61,8 @@ tl::expected<LineAddress, QString> parseLineAddress(const QString& text) {
         const QString command = trimmed.mid(5).trimmed();
         if (command.isEmpty())
             return tl::unexpected(LineWords::tr("\"%1\" names no program").arg(trimmed));
+        if (const auto words = splitCommand(command); !words)
+            return tl::unexpected(LineWords::tr("the command of \"%1\" can't be read: %2").arg(trimmed, words.error()));
         return LineAddress{LineAddress::Kind::Program, command, 0, trimmed};
     }
     return parseSerial(trimmed);

@@ -13,7 +13,8 @@ namespace skincal {
 ///   /dev/ttyUSB0, ttyACM1, COM3, /dev/pts/4        a serial port, at 3 Mbaud
 ///   /dev/ttyUSB0@921600                            at another speed
 ///   tcp://gateway.local:5760                       a socket
-///   exec:python3 bridge.py --robot left            a program that speaks the protocol on its input and output
+///   exec:python3 bridge.py --robot left            a program that speaks the protocol on its input and output;
+///                                                  quoted as in a shell
 struct LineAddress {
     enum class Kind { Serial, Tcp, Program };
     static constexpr int kBaud = 3'000'000;

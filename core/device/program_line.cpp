@@ -3,6 +3,8 @@
 #include <QTimer>
 #include <cstdio>
 
+#include "core/device/split_command.h"
+
 namespace skincal {
 
 ProgramLine::ProgramLine(QString command, QObject* parent) : Line(parent), command_(std::move(command)) {}
@@ -34,9 +36,12 @@ void ProgramLine::open() {
         const QString detail = said.isEmpty() && code != 0 ? tr("exit code %1").arg(code) : said;
         QTimer::singleShot(0, process_.get(), [this, detail] { fail(LineFault::Ended, detail); });
     });
-    QStringList words = QProcess::splitCommand(command_);
-    const QString program = words.isEmpty() ? QString() : words.takeFirst();
-    process->start(program, words);
+    const auto words = splitCommand(command_);
+    if (!words) {
+        QTimer::singleShot(0, process, [this, why = words.error()] { fail(LineFault::NoProgram, why); });
+        return;
+    }
+    process->start(words->front(), words->mid(1));
 }
 
 void ProgramLine::close() {

@@ -13,7 +13,7 @@ namespace skincal {
 class ProgramLine : public Line {
     Q_OBJECT
   public:
-    /// @param command  program and arguments, quoted as in a shell; nothing else of a shell
+    /// @param command  program and arguments, split as splitCommand() does
     explicit ProgramLine(QString command, QObject* parent = nullptr);
     ~ProgramLine() override;
 

@@ -11,7 +11,10 @@ enum class LineFault {
     NoSuchPort,
     NoPermission,
     InUse,
-    Refused,  ///< nobody listens at that address
+    NoSerialPort,  ///< there is such a file, and it is another thing
+    BaudRefused,
+    Refused,      ///< nobody listens at that address
+    Unreachable,  ///< no way leads there, or nothing comes back from there
     UnknownHost,
     NoProgram,  ///< there is no such program, or it may not be run
     Ended,      ///< unplugged, hung up, or the program ended

@@ -89,27 +89,40 @@ QString lineHelp(LineFault fault, const LineAddress& address, const QString& det
         case LineFault::InUse:
             return LineWords::tr("another program has %1 open: \"fuser -v %2\" names it")
                 .arg(address.target, SerialLine::fullPath(address.target));
+        case LineFault::NoSerialPort:
+            return LineWords::tr(
+                       "there is %1, but it is no serial port: adapters are called /dev/ttyUSB0, /dev/ttyACM0")
+                .arg(SerialLine::fullPath(address.target));
+        case LineFault::BaudRefused:
+            return LineWords::tr("the port %1 refuses %2 baud: try the speed of the skin's adapter, %1@%3 say")
+                .arg(address.target)
+                .arg(address.number)
+                .arg(address.number == 921'600 ? 115'200 : 921'600);
         case LineFault::Refused:
             return LineWords::tr("nobody listens at %1: is the gateway running?").arg(address.text);
+        case LineFault::Unreachable:
+            return LineWords::tr(
+                       "the gateway at %1 can't be reached: is that its address, and is this computer in its network?")
+                .arg(address.text);
         case LineFault::UnknownHost:
             return LineWords::tr("there is no host \"%1\"").arg(address.target);
         case LineFault::NoProgram:
-            return LineWords::tr("\"%1\" could not be started: %2").arg(address.target, detail);
+            return LineWords::tr("the program \"%1\" could not be started: %2").arg(address.target, detail);
         case LineFault::Ended:
             switch (address.kind) {
                 case LineAddress::Kind::Serial:
-                    return LineWords::tr("%1 was unplugged").arg(address.target);
+                    return LineWords::tr("the port %1 was unplugged").arg(address.target);
                 case LineAddress::Kind::Tcp:
-                    return LineWords::tr("%1 hung up").arg(address.text);
+                    return LineWords::tr("the gateway at %1 hung up").arg(address.text);
                 case LineAddress::Kind::Program:
-                    return LineWords::tr("\"%1\" ended%2")
+                    return LineWords::tr("the program \"%1\" ended%2")
                         .arg(address.target, detail.isEmpty() ? QString() : QStringLiteral(": ") + detail);
             }
             break;
         case LineFault::Other:
             break;
     }
-    return QStringLiteral("%1: %2").arg(address.text, detail);
+    return LineWords::tr("the line to %1 failed: %2").arg(address.text, detail);
 }
 
 }  // namespace skincal

@@ -1,8 +1,16 @@
 #include "core/device/serial_line.h"
 
+#include <QFile>
 #include <QFileInfo>
 #include <QSerialPort>
 #include <QTimer>
+
+#ifdef Q_OS_UNIX
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#endif
 
 namespace skincal {
 namespace {
@@ -24,6 +32,35 @@ LineFault faultOf(QSerialPort::SerialPortError error, const QString& path) {
         default:
             return LineFault::Other;
     }
+}
+
+/// Whether there is a file of that name that can be opened and is another thing: a directory, "/dev/null".
+bool isOtherThing([[maybe_unused]] const QString& path) {
+#ifdef Q_OS_UNIX
+    const int file = ::open(QFile::encodeName(path).constData(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0)
+        return false;
+    // Of a port that is just being unplugged it says something else.
+    const bool isOther = ::isatty(file) == 0 && errno == ENOTTY;
+    ::close(file);
+    return isOther;
+#else
+    return false;
+#endif
+}
+
+/// Why it could not be opened, where the system's answer says little: "Inappropriate ioctl for device".
+LineFault lookedInto(LineFault fault, const QString& path) {
+    if (fault != LineFault::Other && fault != LineFault::Ended)
+        return fault;
+    if (isOtherThing(path))
+        return LineFault::NoSerialPort;
+    if (fault == LineFault::Ended)
+        return fault;
+    QSerialPort usual(path);
+    usual.setParity(QSerialPort::NoParity);
+    usual.setBaudRate(QSerialPort::Baud9600);
+    return usual.open(QIODevice::ReadWrite) ? LineFault::BaudRefused : fault;
 }
 
 }  // namespace
@@ -54,7 +91,9 @@ void SerialLine::open() {
     if (!isOpen) {
         const auto error = QFileInfo::exists(path) ? port_->error() : QSerialPort::DeviceNotFoundError;
         const QString detail = port_->errorString();
-        QTimer::singleShot(0, this, [this, error, path, detail] { fail(faultOf(error, path), detail); });
+        port_->close();
+        const LineFault fault = lookedInto(faultOf(error, path), path);
+        QTimer::singleShot(0, this, [this, fault, detail] { fail(fault, detail); });
         return;
     }
     port_->clear();  // what a device sent before anybody listened

@@ -1,13 +1,12 @@
 #include "core/device/socket_line.h"
 
-#include <QTimer>
-
 namespace skincal {
 namespace {
 
 constexpr int kLastWords = 100;  // ms, for what waits to be sent as it is closed
 
-LineFault faultOf(QAbstractSocket::SocketError error) {
+/// @param wasOpen  until then
+LineFault faultOf(QAbstractSocket::SocketError error, bool wasOpen) {
     switch (error) {
         case QAbstractSocket::ConnectionRefusedError:
             return LineFault::Refused;
@@ -15,7 +14,8 @@ LineFault faultOf(QAbstractSocket::SocketError error) {
             return LineFault::UnknownHost;
         case QAbstractSocket::RemoteHostClosedError:
         case QAbstractSocket::NetworkError:
-            return LineFault::Ended;
+        case QAbstractSocket::SocketTimeoutError:
+            return wasOpen ? LineFault::Ended : LineFault::Unreachable;
         default:
             return LineFault::Other;
     }
@@ -23,28 +23,40 @@ LineFault faultOf(QAbstractSocket::SocketError error) {
 
 }  // namespace
 
-SocketLine::SocketLine(QString host, quint16 port, QObject* parent)
-    : Line(parent), host_(std::move(host)), port_(port), socket_(this) {
+SocketLine::SocketLine(QString host, quint16 port, std::chrono::milliseconds patience, QObject* parent)
+    : Line(parent), host_(std::move(host)), port_(port), socket_(this), patience_(this) {
+    patience_.setSingleShot(true);
+    patience_.setInterval(patience);
+    connect(&patience_, &QTimer::timeout, this, [this] {
+        close();
+        emit failed(LineFault::Unreachable, {});
+    });
     connect(&socket_, &QTcpSocket::connected, this, [this] {
+        patience_.stop();
+        wasOpen_ = true;
         socket_.setSocketOption(QAbstractSocket::LowDelayOption, 1);
         emit opened();
     });
     connect(&socket_, &QTcpSocket::readyRead, this, [this] { emit received(socket_.readAll()); });
     connect(&socket_, &QTcpSocket::errorOccurred, this, [this](QAbstractSocket::SocketError error) {
+        patience_.stop();
         // From the event loop: it fires from within connectToHost(), too.
-        QTimer::singleShot(0, this, [this, error, detail = socket_.errorString()] {
+        QTimer::singleShot(0, this, [this, fault = faultOf(error, wasOpen_), detail = socket_.errorString()] {
             close();
-            emit failed(faultOf(error), detail);
+            emit failed(fault, detail);
         });
     });
 }
 
 void SocketLine::open() {
     close();
+    patience_.start();
     socket_.connectToHost(host_, port_);
 }
 
 void SocketLine::close() {
+    patience_.stop();
+    wasOpen_ = false;
     const QSignalBlocker quiet(socket_);
     if (socket_.state() == QAbstractSocket::ConnectedState) {
         socket_.disconnectFromHost();  // once everything is sent

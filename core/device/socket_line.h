@@ -1,6 +1,8 @@
 #pragma once
 
 #include <QTcpSocket>
+#include <QTimer>
+#include <chrono>
 
 #include "core/device/line.h"
 
@@ -10,7 +12,9 @@ namespace skincal {
 class SocketLine : public Line {
     Q_OBJECT
   public:
-    SocketLine(QString host, quint16 port, QObject* parent = nullptr);
+    /// @param patience  until the host counts as out of reach: the system itself waits for minutes
+    SocketLine(QString host, quint16 port, std::chrono::milliseconds patience = std::chrono::seconds(5),
+               QObject* parent = nullptr);
 
     void open() override;
     void close() override;
@@ -22,6 +26,8 @@ class SocketLine : public Line {
     QString host_;
     quint16 port_;
     QTcpSocket socket_;
+    QTimer patience_;
+    bool wasOpen_ = false;  ///< since open()
 };
 
 }  // namespace skincal

@@ -2,9 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <QSignalSpy>
 #include <QTcpServer>
+#include <algorithm>
+#include <array>
+#include <tuple>
 
+#include "core/device/socket_line.h"
 #include "core/rig/pseudo_terminal.h"
 #include "tests/wait_for.h"
 
@@ -33,7 +41,8 @@ TEST(LineAddress, IsWrittenAsPeopleWriteIt) {
 
 TEST(LineAddress, WhatIsNoneIsRefusedWithWhatWasExpected) {
     for (const char* text : {"", "  ", "tcp://host", "tcp://:5", "tcp://host:0", "tcp://host:70000", "tcp://host:x",
-                             "exec:", "exec:  ", "/dev/ttyUSB0@", "/dev/ttyUSB0@fast", "/dev/ttyUSB0@-1", "@9600"}) {
+                             "exec:", "exec:  ", "exec:cat 'left open", "/dev/ttyUSB0@", "/dev/ttyUSB0@fast",
+                             "/dev/ttyUSB0@-1", "@9600"}) {
         const auto address = parseLineAddress(QString::fromLatin1(text));
         ASSERT_FALSE(address) << text;
         EXPECT_FALSE(address.error().isEmpty()) << text;
@@ -79,6 +88,101 @@ TEST(Line, EveryWayToFailHasItsReasonAndWhatToDo) {
         EXPECT_EQ(fault, LineFault::Refused);
         EXPECT_TRUE(help.contains(QLatin1String("gateway"))) << help.toStdString();
     }
+    {
+        // No network leads to a group of hosts.
+        const auto [fault, help] = faultOf(QStringLiteral("tcp://224.0.0.1:5000"));
+        EXPECT_EQ(fault, LineFault::Unreachable);
+        EXPECT_TRUE(help.contains(QLatin1String("can't be reached"))) << help.toStdString();
+    }
+    {
+        const auto [fault, help] = faultOf(QStringLiteral("/dev/null"));
+        EXPECT_EQ(fault, LineFault::NoSerialPort);
+        EXPECT_TRUE(help.contains(QLatin1String("/dev/null, but it is no serial port"))) << help.toStdString();
+    }
+}
+
+/// A host that takes no more connections: what is sent to it vanishes.
+class Abyss {
+  public:
+    Abyss() {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof(address);
+        auto* place = reinterpret_cast<sockaddr*>(&address);
+        listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
+        EXPECT_EQ(::bind(listener_, place, size), 0);
+        EXPECT_EQ(::listen(listener_, 0), 0);
+        EXPECT_EQ(::getsockname(listener_, place, &size), 0);
+        port = ntohs(address.sin_port);
+        for (int& caller : callers_) {
+            caller = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
+            std::ignore = ::connect(caller, place, size);
+        }
+    }
+    Abyss(const Abyss&) = delete;
+    Abyss& operator=(const Abyss&) = delete;
+    ~Abyss() {
+        for (const int caller : callers_)
+            ::close(caller);
+        ::close(listener_);
+    }
+
+    quint16 port = 0;
+
+  private:
+    int listener_ = -1;
+    std::array<int, 4> callers_{};
+};
+
+TEST(Line, AHostFromWhichNothingComesBackIsOutOfReachBeforeLong) {
+    const Abyss abyss;
+    SocketLine line(QStringLiteral("127.0.0.1"), abyss.port, std::chrono::milliseconds(300));
+    std::optional<LineFault> fault;
+    int faults = 0;
+    QObject::connect(&line, &Line::failed, &line, [&](LineFault what) {
+        fault = what;
+        ++faults;
+    });
+    line.open();
+    ASSERT_TRUE(waitFor([&] { return fault.has_value(); }));
+    EXPECT_EQ(fault, LineFault::Unreachable);
+    EXPECT_EQ(faults, 1);
+    const QString help = lineHelp(*fault, parseLineAddress(QStringLiteral("tcp://10.255.255.1:5000")).value(), {});
+    EXPECT_TRUE(help.contains(QLatin1String("can't be reached"))) << help.toStdString();
+    EXPECT_FALSE(help.contains(QLatin1String("hung up"))) << help.toStdString();
+}
+
+TEST(Line, WhatIsSaidOfOneBeginsWithAWord) {
+    // An address with a capital is another one.
+    for (const char* text : {"ttyUSB0", "tcp://localhost:5000", "exec:bridge"}) {
+        const LineAddress address = parseLineAddress(QString::fromLatin1(text)).value();
+        for (const auto fault :
+             {LineFault::NoSuchPort, LineFault::NoPermission, LineFault::InUse, LineFault::NoSerialPort,
+              LineFault::BaudRefused, LineFault::Refused, LineFault::Unreachable, LineFault::UnknownHost,
+              LineFault::NoProgram, LineFault::Ended, LineFault::Other}) {
+            const QString word = lineHelp(fault, address, QStringLiteral("so it is")).section(u' ', 0, 0);
+            EXPECT_TRUE(std::all_of(word.begin(), word.end(), [](QChar c) { return c.isLower(); }))
+                << word.toStdString();
+        }
+    }
+}
+
+TEST(Line, ARefusedBaudRateNamesItAndAnother) {
+    const LineAddress address = parseLineAddress(QStringLiteral("/dev/ttyUSB0@12345678")).value();
+    const QString help = lineHelp(LineFault::BaudRefused, address, {});
+    EXPECT_TRUE(help.contains(QLatin1String("12345678"))) << help.toStdString();
+    EXPECT_TRUE(help.contains(QLatin1String("/dev/ttyUSB0@921600"))) << help.toStdString();
+}
+
+TEST(Line, AProgramIsQuotedAsInAShell) {
+    const auto line =
+        makeLine(parseLineAddress(QStringLiteral(R"(exec:printf '%s|' 'a "b' "c 'd" e\ f '$HOME' \'g)")).value());
+    QByteArray here;
+    QObject::connect(line.get(), &Line::received, line.get(), [&](const QByteArray& b) { here += b; });
+    line->open();
+    EXPECT_TRUE(waitFor([&] { return here.count('|') == 5; })) << here.toStdString();
+    EXPECT_EQ(here, QByteArray(R"(a "b|c 'd|e f|$HOME|'g|)"));
 }
 
 TEST(Line, APortThatIsOpenElsewhereIsInUse) {

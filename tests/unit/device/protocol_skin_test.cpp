@@ -5,7 +5,10 @@
 #include <QCoreApplication>
 #include <QDir>
 #include <QElapsedTimer>
+#include <QPointer>
 #include <QSignalSpy>
+#include <QTcpServer>
+#include <QTcpSocket>
 #include <QTemporaryDir>
 #include <set>
 
@@ -260,6 +263,45 @@ TEST_F(AProtocolSkin, WhatIsStillSaidOfAnOpeningThatHasEndedDoesNotCount) {
         device.close();
     }
     EXPECT_FALSE(failure) << failure->toStdString();
+}
+
+TEST_F(AProtocolSkin, HangsOnAGatewayJustAsWell) {
+    QTcpServer gateway;
+    ASSERT_TRUE(gateway.listen(QHostAddress::LocalHost));
+    QPointer<QTcpSocket> peer;
+    QObject::connect(&gateway, &QTcpServer::newConnection, &gateway, [&] {
+        peer = gateway.nextPendingConnection();
+        QObject::connect(peer, &QTcpSocket::readyRead, &rig, [this, &peer] { wired->receive(peer->readAll()); });
+    });
+    QObject::connect(wired.get(), &WiredSkin::sent, &gateway, [&](const QByteArray& bytes) {
+        if (peer)
+            peer->write(bytes);
+    });
+    ProtocolSkin remote(parseLineAddress(QStringLiteral("tcp://127.0.0.1:%1").arg(gateway.serverPort())).value(),
+                        allTemplates());
+    std::optional<Skin> found;
+    QString why;
+    QObject::connect(&remote, &SkinDevice::opened, &remote, [&] { remote.explore(); });
+    QObject::connect(&remote, &SkinDevice::explored, &remote, [&](const Skin& skin) { found = skin; });
+    QObject::connect(&remote, &SkinDevice::failed, &remote, [&](const QString& words) { why = words; });
+    QObject::connect(&remote, &SkinDevice::lightShown, &remote, [this](std::uint64_t token) { shown = token; });
+    for (int time = 0; time < 2; ++time) {
+        found.reset();
+        remote.open();
+        ASSERT_TRUE(waitFor([&] { return found.has_value() || !why.isEmpty(); })) << time;
+        ASSERT_TRUE(found) << why.toStdString();
+        EXPECT_EQ(found->modules.size(), rig.world().skin.modules.size());
+        EXPECT_EQ(found->links.size(), rig.world().skin.links.size());
+        explored = *found;
+        const std::uint64_t token = remote.light({{found->modules[3].id, std::nullopt}});
+        ASSERT_TRUE(waitFor([&] { return shown == token; }));
+        EXPECT_EQ(shining(), std::set{found->modules[3].id});
+        peer->abort();
+        ASSERT_TRUE(waitFor([&] { return !why.isEmpty(); }));
+        EXPECT_TRUE(why.contains(QLatin1String("hung up"))) << why.toStdString();
+        why.clear();
+        shown = 0;
+    }
 }
 
 TEST_F(AProtocolSkin, ASilentPortSaysSo) {

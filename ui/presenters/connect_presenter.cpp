@@ -3,6 +3,8 @@
 #include <chrono>
 #include <map>
 
+#include "ui/texts/sentences.h"
+
 namespace skincal {
 namespace {
 
@@ -47,8 +49,7 @@ QString sentenceOf(const Connection& connection, const QString& deviceSays) {
         case Fault::None:
             return {};
         case Fault::Failed:
-            return deviceSays.isEmpty() ? ConnectPresenter::tr("The skin failed")
-                                        : deviceSays.left(1).toUpper() + deviceSays.mid(1);
+            return deviceSays.isEmpty() ? ConnectPresenter::tr("The skin failed") : capitalised(deviceSays);
         case Fault::Closed:
             return ConnectPresenter::tr("The skin was disconnected");
         case Fault::NoAnswer:

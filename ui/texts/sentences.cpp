@@ -1,6 +1,7 @@
 #include "ui/texts/sentences.h"
 
 #include <QCoreApplication>
+#include <algorithm>
 
 namespace skincal {
 
@@ -10,8 +11,14 @@ QString said(const Sentence& sentence) {
 }
 
 QString saidAlone(const Sentence& sentence) {
-    QString text = said(sentence);
-    if (!text.isEmpty())
+    return capitalised(said(sentence));
+}
+
+QString capitalised(QString text) {
+    const auto end = std::find_if(text.cbegin(), text.cend(), [](QChar c) { return c.isSpace(); });
+    const bool isWord = std::all_of(
+        text.cbegin(), end, [](QChar c) { return c.isLower() || c == u'\'' || c == u'’' || c == u'-' || c == u','; });
+    if (isWord && !text.isEmpty())
         text[0] = text[0].toUpper();
     return text;
 }

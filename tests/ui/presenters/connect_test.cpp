@@ -4,6 +4,7 @@
 
 #include "tests/ui/presenters/desk.h"
 #include "tests/unit/skin/grids.h"
+#include "ui/texts/sentences.h"
 
 namespace skincal {
 namespace {
@@ -127,6 +128,10 @@ TEST(ConnectPresenter, HasASentenceForEveryFault) {
     EXPECT_EQ(sentences.size(), 5U);
     EXPECT_FALSE(sentences.contains(QString()));
     EXPECT_EQ(sentenceOf({Phase::Lost, 0, Fault::Failed}, "no such port"), "No such port");
+    for (const char* name : {"tcp://127.0.0.1:5760 is gone", "ttyUSB0 is gone", "gateway.local: it is gone"})
+        EXPECT_EQ(sentenceOf({Phase::Lost, 0, Fault::Failed}, name), name) << "with a capital it is another address";
+    EXPECT_EQ(saidAlone(Sentence::saying("{} is empty", std::string("lens.yaml"))), "lens.yaml is empty");
+    EXPECT_EQ(saidAlone(Sentence::saying("module {} doesn't answer", 3)), "Module 3 doesn't answer");
     EXPECT_TRUE(sentenceOf({Phase::Lost, 1, Fault::Silent}, {}).contains("after 1 module had"));
     EXPECT_TRUE(sentenceOf({Phase::Lost, 2, Fault::Silent}, {}).contains("after 2 modules had"));
 }

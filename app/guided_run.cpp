@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "ui/presenters/camera_words.h"
+
 namespace skincal {
 namespace {
 
@@ -44,7 +46,21 @@ GuidedRun::GuidedRun(Workbench& workbench, GuidedRunOptions options)
       connect_(workbench),
       poses_(workbench),
       scan_(workbench),
-      before_(workbench.session().measured().skin),
+      skin_(workbench.session().measured().skin),
+      skinGone_(
+          options_.absence, [this] { connect_.connectSkin(); },
+          [this] {
+              stop(QStringLiteral("the skin did not come back within %1 s. %2")
+                       .arg(options_.absence.count())
+                       .arg(skinGone_.why()));
+          }),
+      cameraGone_(
+          options_.absence, [this] { scan_.setActive(true); },
+          [this] {
+              stop(QStringLiteral("the camera did not come back within %1 s. %2")
+                       .arg(options_.absence.count())
+                       .arg(cameraGone_.why()));
+          }),
       input_(fileno(stdin), QSocketNotifier::Read),
       patience_(this) {
     input_.setEnabled(false);
@@ -64,37 +80,16 @@ GuidedRun::GuidedRun(Workbench& workbench, GuidedRunOptions options)
         if (const auto then = std::exchange(afterEnter_, {}))
             then();
     });
-    connect(&connect_, &ConnectPresenter::stateChanged, this, [this] {
-        using Phase = Connection::Phase;
-        const Phase phase = connect_.state().phase;
-        if (phase == Phase::Connected && step_ == Step::Connecting)
-            connected();
-        else if (phase == Phase::Lost && step_ == Step::Connecting)
-            stop(connect_.why());
-        else if (phase == Phase::Lost && step_ != Step::Done)
-            say(connect_.why() + QStringLiteral(": waiting until it is there again"));
-    });
+    connect(&connect_, &ConnectPresenter::stateChanged, this, &GuidedRun::connectionChanged);
     connect(&poses_, &PosePresenter::captured, this, &GuidedRun::poseCaptured);
     connect(&scan_, &ScanPresenter::scanned, this, &GuidedRun::viewScanned);
-    connect(&scan_, &ScanPresenter::pictureChanged, this, [this] {
-        if (step_ == Step::Camera && scan_.obstacle().isEmpty()) {
-            patience_.stop();
-            step_ = Step::Scanning;
-            nextView();
-        }
-    });
-    connect(&scan_, &ScanPresenter::cameraFailed, this, [this](const QString& why) {
-        if (step_ == Step::Camera)
-            stop(why);
-    });
+    connect(&scan_, &ScanPresenter::pictureChanged, this, &GuidedRun::pictureChanged);
+    connect(&scan_, &ScanPresenter::cameraFailed, this, &GuidedRun::cameraFailed);
     connect(&scan_, &ScanPresenter::stateChanged, this, [this] {
-        if (step_ != Step::Scanning || scan_.state().phase != ScanRun::Phase::Failed)
-            return;
-        const QString why = scan_.why();
-        if (++tries_ == kScanTries)
-            return stop(QStringLiteral("the scan failed: ") + why);
-        say(QStringLiteral("The scan failed: %1. Again.").arg(why));
-        QTimer::singleShot(2000, this, [this] { startScan(); });
+        // It also comes where something else changes: a failure counts once, where it is new.
+        const bool hasFailed = scan_.state().phase == ScanRun::Phase::Failed;
+        if (!std::exchange(isFailed_, hasFailed) && hasFailed && step_ == Step::Scanning)
+            scanFailed();
     });
     connect(&workbench.session(), &Session::fileFailed, this, &GuidedRun::stop);
     connect(&workbench.session(), &Session::saved, this, [this] {
@@ -112,6 +107,8 @@ void GuidedRun::stop(const QString& why) {
         return;
     step_ = Step::Done;
     patience_.stop();
+    skinGone_.end();
+    cameraGone_.end();
     poses_.setActive(false);
     scan_.setActive(false);
     emit finished(why);
@@ -123,10 +120,88 @@ void GuidedRun::begin() {
     connect_.connectSkin();
 }
 
+void GuidedRun::connectionChanged() {
+    using Phase = Connection::Phase;
+    const Phase phase = connect_.state().phase;
+    if (step_ == Step::Connecting) {
+        if (phase == Phase::Connected)
+            connected();
+        else if (phase == Phase::Lost)
+            stop(connect_.why());
+    } else if (step_ != Step::Done) {
+        if (phase == Phase::Lost)
+            beginWaiting(skinGone_, connect_.why());
+        else if (phase == Phase::Connected && skinGone_.end())
+            skinIsBack();
+    }
+}
+
+void GuidedRun::skinIsBack() {
+    // Nothing was written since: what is in the recording is still of the skin before.
+    if (!sameSkin(skin_, workbench_.session().measured().skin))
+        return stop(QStringLiteral("another skin was connected in the place of the one that was lost"));
+    say(QStringLiteral("The skin is there again"));
+    goOn();
+}
+
+void GuidedRun::cameraFailed(const QString& why) {
+    if (step_ == Step::Camera)
+        stop(why);
+    else if (step_ == Step::Scanning)
+        beginWaiting(cameraGone_, why);
+}
+
+void GuidedRun::pictureChanged() {
+    if (scan_.picture().empty())
+        return;
+    if (cameraGone_.end()) {
+        say(QStringLiteral("The camera gives pictures again"));
+        goOn();
+    }
+    if (step_ != Step::Camera || !workbench_.isSkinReady())
+        return;
+    if (const QString obstacle = scan_.obstacle(); !obstacle.isEmpty())
+        return stop(obstacle);
+    patience_.stop();
+    step_ = Step::Scanning;
+    nextView();
+}
+
+void GuidedRun::noteControls() {
+    const std::vector<ControlState> controls = workbench_.camera()->controls();
+    if (areControlsTold_ || !mayBrightnessChange(controls))
+        return;
+    areControlsTold_ = true;
+    say(QStringLiteral("%1. %2").arg(brightnessWords(), controlWords(controls)));
+}
+
+void GuidedRun::beginWaiting(Absence& absence, const QString& why) {
+    if (!absence.note(why))
+        return;
+    patience_.stop();
+    say(why);
+    say(QStringLiteral("Waiting until it is there again, for %1 s at most").arg(options_.absence.count()));
+}
+
+void GuidedRun::goOn() {
+    if (skinGone_.isLasting() || cameraGone_.isLasting())
+        return;
+    if (step_ == Step::Camera || (step_ == Step::Posing && isPoseDue_))
+        patience_.start(options_.patience);
+    if (step_ != Step::Scanning || !isScanDue_)
+        return;
+    if (const QString obstacle = scan_.obstacle(); !obstacle.isEmpty())
+        return stop(obstacle);
+    isScanDue_ = false;
+    say(QStringLiteral("View %1 of %2: scanning").arg(scanned_ + 1).arg(options_.views));
+    scan_.start();
+}
+
 void GuidedRun::connected() {
     const Measured& measured = workbench_.session().measured();
-    if (!before_.modules.empty() && !sameSkin(before_, measured.skin))
+    if (!skin_.modules.empty() && !sameSkin(skin_, measured.skin))
         return stop(QStringLiteral("the recording is of another skin"));
+    skin_ = measured.skin;
     say(QStringLiteral("%1 modules, %2 links").arg(measured.skin.modules.size()).arg(measured.skin.links.size()));
     captured_ = static_cast<int>(posesOf(measured, workbench_.session().decisions()).size());
     scanned_ = static_cast<int>(measured.views.size());
@@ -145,7 +220,7 @@ void GuidedRun::beginPoses() {
     if (captured_ > 0)
         return nextPose();
     say(QStringLiteral("Pose 1 of %1: let the body rest").arg(options_.poses));
-    patience_.start(options_.patience);
+    awaitPose();
 }
 
 void GuidedRun::nextPose() {
@@ -156,13 +231,19 @@ void GuidedRun::nextPose() {
     }
     say(QStringLiteral("Pose %1 of %2: turn the body over and let it rest").arg(captured_ + 1).arg(options_.poses));
     if (!options_.onPose.isEmpty())
-        prepare(options_.onPose, {}, std::move(environment), [this] { patience_.start(options_.patience); });
+        prepare(options_.onPose, {}, std::move(environment), [this] { awaitPose(); });
+}
+
+void GuidedRun::awaitPose() {
+    isPoseDue_ = true;
+    goOn();
 }
 
 void GuidedRun::poseCaptured(int /*pose*/) {
     if (step_ != Step::Posing)
         return;
     patience_.stop();
+    isPoseDue_ = false;
     save();
     if (++captured_ < options_.poses)
         nextPose();
@@ -179,8 +260,9 @@ void GuidedRun::endPoses() {
     }
     step_ = Step::Camera;
     say(QStringLiteral("Starting the camera"));
-    patience_.start(options_.patience);
     workbench_.chooseCamera(0);
+    connect(workbench_.camera(), &FrameSource::abilitiesChanged, this, &GuidedRun::noteControls);
+    goOn();
     scan_.setActive(true);
 }
 
@@ -199,10 +281,25 @@ void GuidedRun::nextView() {
 }
 
 void GuidedRun::startScan() {
-    if (step_ != Step::Scanning)
+    isScanDue_ = true;
+    goOn();
+}
+
+void GuidedRun::scanFailed() {
+    using Fault = ScanRun::Fault;
+    // What looks before this one found has become a view: nothing is to be scanned anew.
+    if (scan_.isKept())
         return;
-    say(QStringLiteral("View %1 of %2: scanning").arg(scanned_ + 1).arg(options_.views));
-    scan_.start();
+    const Fault fault = scan_.state().fault;
+    if (fault == Fault::SkinGone || fault == Fault::CameraFailed) {
+        // Nobody's fault but the cable's: it costs no try. That it is waited for is said by who misses it.
+        isScanDue_ = true;
+        return;
+    }
+    if (++tries_ == kScanTries)
+        return stop(QStringLiteral("the scan failed: ") + scan_.why());
+    say(QStringLiteral("The scan failed: %1. Again.").arg(scan_.why()));
+    QTimer::singleShot(2000, this, [this] { startScan(); });
 }
 
 void GuidedRun::viewScanned(const std::string& view) {

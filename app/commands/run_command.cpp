@@ -26,6 +26,7 @@ struct RunArguments {
     std::filesystem::path output;
     std::filesystem::path body;
     GuidedRunOptions options;
+    int patience_s = 120;
     std::string onPose;
     std::string onView;
     bool force = false;
@@ -120,6 +121,7 @@ int runGuided(RunArguments arguments) {
         decisions.cameraOrigin.file = std::filesystem::path(arguments.intrinsics).filename().string();
     });
     arguments.options.directory = QString::fromStdString(arguments.output.string());
+    arguments.options.absence = std::chrono::seconds(arguments.patience_s);
     arguments.options.onPose = QString::fromStdString(arguments.onPose);
     arguments.options.onView = QString::fromStdString(arguments.onView);
     std::optional<QString> why;
@@ -132,14 +134,12 @@ int runGuided(RunArguments arguments) {
         run.begin();
         QCoreApplication::exec();
     }
-    const std::string howToGoOn =
-        "; what was measured is in " + arguments.output.string() + ", and --resume goes on with it";
-    const auto& measured = workbench.session().measured();
-    if (!why)
-        return dataDoNotSuffice("interrupted" + howToGoOn);
-    if (!why->isEmpty())
-        return badInput(why->toStdString() + (measured.gravity.empty() ? std::string() : howToGoOn));
-    return calibrateRecording(arguments);
+    if (why && why->isEmpty())
+        return calibrateRecording(arguments);
+    const int code = why ? badInput(why->toStdString()) : dataDoNotSuffice("interrupted");
+    if (!workbench.session().measured().gravity.empty())
+        fmt::print(stderr, "What was measured is in {}, and --resume goes on with it\n", arguments.output.string());
+    return code;
 }
 
 }  // namespace
@@ -169,6 +169,11 @@ void addRunCommand(CommandLine& line) {
                         "Shell command that turns the body, run before each pose but the first");
     command->add_option("--on-view", arguments->onView,
                         "Shell command that moves the camera, run before each view but the first");
+    command
+        ->add_option("--patience", arguments->patience_s,
+                     "How many seconds a skin or camera that is lost in the midst is waited for")
+        ->check(CLI::Range(1, 1'000'000))
+        ->capture_default_str();
     CLI::Option* force = command->add_flag("--force", arguments->force, "Replace what is there");
     command
         ->add_flag("--resume", arguments->resume,
@@ -179,6 +184,7 @@ void addRunCommand(CommandLine& line) {
         "Without commands it says what to do, and waits: for a pose until the body rests, for a view until Enter is\n"
         "pressed. Commands get SKINCAL_POSE or SKINCAL_VIEW (from 0), and SKINCAL_UP, the direction of module\n"
         "SKINCAL_MODULE that should point up. Everything is written to the recording as soon as it is measured.\n"
+        "A skin or camera that is unplugged in the midst is waited for, and what it was needed for is done anew.\n"
         "Exit codes: 0 done; 1 the data do not suffice, or interrupted; 2 bad input, or skin or camera failed.");
     command->callback([&line, arguments] { line.run = [arguments] { return runGuided(*arguments); }; });
 }

@@ -41,7 +41,7 @@ class DeskWithWires {
         camera_ = std::make_unique<VirtualCamera>(kCameraName, VirtualCamera::Kind{"i420", lens.width, lens.height, 20},
                                                   [this](std::uint64_t k) { return paint(k); });
         camera_->plug();
-        EXPECT_EQ(terminal_.open(), QString());
+        plugSkin();
         QObject::connect(&terminal_, &PseudoTerminal::received, &skin_, &WiredSkin::receive);
         QObject::connect(&skin_, &WiredSkin::sent, &terminal_, &PseudoTerminal::write);
         look_.setInterval(10);
@@ -50,24 +50,45 @@ class DeskWithWires {
         EXPECT_TRUE(writeCameraModel(lensFile().toStdString(), lens));
     }
 
-    [[nodiscard]] QString port() const { return terminal_.name(); }
+    [[nodiscard]] QString port() const { return file("skin"); }
     [[nodiscard]] QString lensFile() const { return file("lens.yaml"); }
     [[nodiscard]] QString file(const char* name) const { return QDir(folder_.path()).filePath(QLatin1String(name)); }
     [[nodiscard]] SimulatedRig& rig() { return rig_; }
     [[nodiscard]] WiredSkin& skin() { return skin_; }
+    [[nodiscard]] VirtualCamera& camera() { return *camera_; }
+
+    void plugSkin() { EXPECT_EQ(terminal_.open(file("skin")), QString()); }
+    void unplugSkin() { terminal_.close(); }
 
     /// Runs the program until it ends; its exit code.
-    int run(const QStringList& arguments) {
+    /// @param meanwhile  what somebody at the desk does, called again and again
+    int run(
+        const QStringList& arguments, const std::function<void()>& meanwhile = [] {}) {
+        output.clear();
         QProcess program;
         program.setProcessChannelMode(QProcess::MergedChannels);
         program.start(QStringLiteral(SKINCAL_PROGRAM), arguments);
-        const bool ended = waitFor([&] { return program.state() == QProcess::NotRunning; });
-        output = program.readAll().toStdString();
+        const bool ended = waitFor([&] {
+            output += program.readAll().toStdString();
+            meanwhile();
+            return program.state() == QProcess::NotRunning;
+        });
+        output += program.readAll().toStdString();
         if (!ended)
             program.kill();
         program.waitForFinished();
         return ended && program.exitStatus() == QProcess::NormalExit ? program.exitCode() : -1;
     }
+
+    [[nodiscard]] bool said(const char* text) const { return output.find(text) != std::string::npos; }
+    [[nodiscard]] int timesSaid(const char* text) const {
+        int times = 0;
+        for (std::size_t at = output.find(text); at != std::string::npos; at = output.find(text, at + 1))
+            ++times;
+        return times;
+    }
+    /// A scan is under way.
+    [[nodiscard]] bool shines() const { return !rig_.litAt(rig_.now()).empty(); }
 
     std::string output;
 
@@ -261,6 +282,134 @@ TEST(GuidedRun, SaysWhatIsMissing) {
     EXPECT_NE(desk.output.find(kCameraName), std::string::npos) << desk.output;
     EXPECT_EQ(desk.run(common + QStringList{"--device", "tcp://nowhere", "--camera", kCameraName}), 2);
     EXPECT_NE(desk.output.find("tcp://host:port"), std::string::npos) << desk.output;
+}
+
+/// One pose and one view of a small skin, the shortest run in which all takes part.
+QStringList shortRun(const DeskWithWires& desk) {
+    return {"run",
+            "--device",
+            desk.port(),
+            "--camera",
+            kCameraName,
+            "--intrinsics",
+            desk.lensFile(),
+            "-o",
+            desk.file("desk.skinrec"),
+            "--poses",
+            "1",
+            "--views",
+            "1"};
+}
+
+TEST(GuidedRun, ASkinThatIsUnpluggedInAScanIsWaitedForAndTheViewScannedAnew) {
+    DeskWithWires desk("demo");
+    int unplugs = 0;
+    bool isOut = false;
+    // As often as a scan that fails is tried.
+    const int code = desk.run(shortRun(desk), [&] {
+        if (!isOut && unplugs < 3 && desk.timesSaid("View 1 of 1: scanning") > unplugs && desk.shines()) {
+            desk.unplugSkin();
+            isOut = true;
+            ++unplugs;
+        } else if (isOut && desk.timesSaid("Waiting until it is there again") == unplugs) {
+            desk.plugSkin();
+            isOut = false;
+        }
+    });
+    EXPECT_TRUE(code == 0 || code == 1) << desk.output;
+    EXPECT_EQ(unplugs, 3) << desk.output;
+    EXPECT_EQ(desk.timesSaid("View 1 of 1: scanning"), 4) << desk.output;
+    EXPECT_EQ(desk.timesSaid("was unplugged"), 3) << desk.output;
+    EXPECT_EQ(desk.timesSaid("The skin is there again"), 3) << desk.output;
+    EXPECT_FALSE(desk.said("The scan failed")) << desk.output;
+    const auto recording = readRecording(desk.file("desk.skinrec").toStdString());
+    ASSERT_TRUE(recording) << desk.output;
+    EXPECT_EQ(recording->views.size(), 1U) << desk.output;
+    // This camera has no controls that anybody could hold.
+    EXPECT_EQ(desk.timesSaid("may change its exposure"), 1) << desk.output;
+    EXPECT_EQ(desk.timesSaid("Not held: exposure"), 1) << desk.output;
+}
+
+TEST(GuidedRun, ASkinThatNeverComesBackEndsItAndIsNamed) {
+    DeskWithWires desk("demo");
+    const int code = desk.run(shortRun(desk) << "--patience"
+                                             << "2",
+                              [&] {
+                                  if (desk.said("View 1 of 1: scanning") && desk.shines())
+                                      desk.unplugSkin();
+                              });
+    EXPECT_EQ(code, 2) << desk.output;
+    EXPECT_TRUE(desk.said("the skin did not come back within 2 s. The")) << desk.output;
+    EXPECT_EQ(desk.timesSaid("Waiting until it is there again"), 1) << desk.output;
+    EXPECT_TRUE(desk.said("--resume")) << desk.output;
+}
+
+TEST(GuidedRun, ASkinThatIsLostBetweenPosesIsWaitedForLikewise) {
+    DeskWithWires desk("demo");
+    const QString onPose = QStringLiteral("echo $SKINCAL_POSE > %1").arg(desk.file("pose"));
+    const QStringList arguments{
+        "run", "--device", desk.port(), "--intrinsics", desk.lensFile(), "-o", desk.file("desk.skinrec"), "--poses",
+        "2",   "--views",  "0",         "--on-pose",    onPose};
+    bool isBack = false;
+    int code = desk.run(arguments, [&] {
+        if (!isBack && desk.said("Waiting until it is there again")) {
+            desk.plugSkin();
+            isBack = true;
+        } else if (!isBack && desk.said("Pose 2 of 2")) {
+            desk.unplugSkin();
+        }
+    });
+    EXPECT_TRUE(code == 0 || code == 1) << desk.output;
+    EXPECT_EQ(desk.timesSaid("Waiting until it is there again"), 1) << desk.output;
+    auto recording = readRecording(desk.file("desk.skinrec").toStdString());
+    ASSERT_TRUE(recording) << desk.output;
+    EXPECT_EQ(recording->gravity.size(), 2 * desk.rig().world().T_r_u.size());
+
+    code = desk.run(QStringList(arguments) << "--force"
+                                           << "--patience"
+                                           << "2",
+                    [&] {
+                        if (desk.said("Pose 2 of 2"))
+                            desk.unplugSkin();
+                    });
+    EXPECT_EQ(code, 2) << desk.output;
+    EXPECT_TRUE(desk.said("the skin did not come back within 2 s")) << desk.output;
+}
+
+TEST(GuidedRun, ACameraThatIsUnpluggedInAScanIsWaitedForAndTheViewScannedAnew) {
+    DeskWithWires desk("demo");
+    bool isOut = false;
+    bool isBack = false;
+    const int code = desk.run(shortRun(desk), [&] {
+        if (!isOut && desk.said("View 1 of 1: scanning") && desk.shines()) {
+            desk.camera().unplug();
+            isOut = true;
+        } else if (isOut && !isBack && desk.said("Waiting until it is there again")) {
+            desk.camera().plug();
+            isBack = true;
+        }
+    });
+    EXPECT_TRUE(code == 0 || code == 1) << desk.output;
+    EXPECT_EQ(desk.timesSaid("View 1 of 1: scanning"), 2) << desk.output;
+    EXPECT_EQ(desk.timesSaid("The camera was unplugged"), 1) << desk.output;
+    EXPECT_EQ(desk.timesSaid("The camera gives pictures again"), 1) << desk.output;
+    EXPECT_FALSE(desk.said("The scan failed")) << desk.output;
+    const auto recording = readRecording(desk.file("desk.skinrec").toStdString());
+    ASSERT_TRUE(recording) << desk.output;
+    EXPECT_EQ(recording->views.size(), 1U) << desk.output;
+}
+
+TEST(GuidedRun, ACameraThatNeverComesBackEndsItAndIsNamed) {
+    DeskWithWires desk("demo");
+    const int code = desk.run(shortRun(desk) << "--patience"
+                                             << "2",
+                              [&] {
+                                  if (desk.said("View 1 of 1: scanning") && desk.shines())
+                                      desk.camera().unplug();
+                              });
+    EXPECT_EQ(code, 2) << desk.output;
+    EXPECT_TRUE(desk.said("the camera did not come back within 2 s. The camera")) << desk.output;
+    EXPECT_EQ(desk.timesSaid("Waiting until it is there again"), 1) << desk.output;
 }
 
 }  // namespace

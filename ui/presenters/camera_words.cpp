@@ -161,6 +161,13 @@ bool mayBrightnessChange(const std::vector<ControlState>& controls) {
     });
 }
 
+QString brightnessWords() {
+    return CameraWords::tr(
+        "The camera may change its exposure in the midst of a scan: keep the light even, and scan a view again where "
+        "few "
+        "modules were found");
+}
+
 QString refusedWords(const std::array<std::uint64_t, kFrameFaults>& refused) {
     QStringList parts;
     for (std::size_t k = 0; k < refused.size(); ++k) {

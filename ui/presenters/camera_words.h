@@ -14,6 +14,8 @@ namespace skincal {
 [[nodiscard]] QString controlWords(const std::vector<ControlState>& controls);
 /// Whether exposure or gain may change in the midst of a scan.
 [[nodiscard]] bool mayBrightnessChange(const std::vector<ControlState>& controls);
+/// What that means to who scans; without a full stop.
+[[nodiscard]] QString brightnessWords();
 /// Pictures that were not used and why; empty where all were.
 [[nodiscard]] QString refusedWords(const std::array<std::uint64_t, kFrameFaults>& refused);
 

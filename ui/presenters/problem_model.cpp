@@ -237,13 +237,7 @@ void ProblemModel::collect(std::vector<Problem>& problems) const {
     if (!cameraFailure_.isEmpty())
         problems.push_back({Severity::Error, Step::Camera, cameraFailure_, {}, {}});
     if (workbench_.camera() != nullptr && mayBrightnessChange(workbench_.camera()->controls()))
-        problems.push_back(
-            {Severity::Note,
-             Step::Camera,
-             tr("The camera may change its exposure in the midst of a scan: keep the light even, and scan "
-                "a view again where few modules were found"),
-             {},
-             {}});
+        problems.push_back({Severity::Note, Step::Camera, brightnessWords(), {}, {}});
     if (scan_.state().phase == ScanRun::Phase::Failed)
         problems.push_back({Severity::Error, Step::Scan, tr("The scan was broken off: %1").arg(scan_.why()), {}, {}});
     if (!session.failure().empty())

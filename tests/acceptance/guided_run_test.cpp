@@ -330,6 +330,16 @@ TEST(GuidedRun, ASkinThatIsUnpluggedInAScanIsWaitedForAndTheViewScannedAnew) {
     EXPECT_EQ(desk.timesSaid("Not held: exposure"), 1) << desk.output;
 }
 
+TEST(GuidedRun, ALensForPicturesOfAnotherSizeIsToldAsSoonAsOneCame) {
+    DeskWithWires desk("demo");
+    CameraModel lens = desk.rig().world().scenario.camera;
+    lens.width *= 2;
+    ASSERT_TRUE(writeCameraModel(desk.lensFile().toStdString(), lens));
+    EXPECT_EQ(desk.run(shortRun(desk)), 2) << desk.output;
+    EXPECT_TRUE(desk.said("The intrinsics are for")) << desk.output;
+    EXPECT_FALSE(desk.said("gave no pictures")) << desk.output;
+}
+
 TEST(GuidedRun, ASkinThatNeverComesBackEndsItAndIsNamed) {
     DeskWithWires desk("demo");
     const int code = desk.run(shortRun(desk) << "--patience"

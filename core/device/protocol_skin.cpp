@@ -106,7 +106,10 @@ void ProtocolSkin::adopt(const SkinNetwork& network, quint64 exploration) {
     const auto skin = skinOf(network, templates_, modules_);
     if (!skin) {
         const QString type = QString::fromStdString(skin.error());
-        emit failed(tr("a cell says that it is of the type \"%1\": no module template has that name").arg(type));
+        emit failed(
+            tr("a cell says that it is of the type \"%1\": no module template has that name; \"skincal explore\" and "
+               "\"skincal run\" take its file with --template FILE")
+                .arg(type));
         return;
     }
     network_ = network;

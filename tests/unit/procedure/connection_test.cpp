@@ -112,7 +112,7 @@ class FaultListener : public SkinListener {
     void onExplored(const SkinNetwork&) override {}
     void onRestarted() override {}
     void onShown(std::uint64_t) override {}
-    void onNotShown(std::uint64_t, std::size_t) override {}
+    void onNotShown(std::uint64_t /*token*/, std::span<const CellNumber> /*dark*/) override {}
     void onAcceleration(const RestReading&, Time) override {}
     void onRest(std::span<const RestReading>, std::span<const CellNumber>) override {}
     void onTouch(std::span<const CellTouch>, Time) override {}

@@ -24,6 +24,7 @@ struct VirtualSkinArguments {
     bool stdio = false;
     WireFaults faults;
     double latency_ms = 0;
+    bool isTerminal = false;  ///< said so; it is, where nothing else is said
     int baud = 3'000'000;
     std::vector<std::uint32_t> dead;
     std::vector<std::string> cut;
@@ -210,12 +211,16 @@ void addVirtualSkinCommand(CommandLine& line) {
     command->add_option("scenario", arguments->scenario, "What it is: see \"skincal simulate --list\"")
         ->capture_default_str();
     addSeedOption(*command, arguments->seed, "Which of the scenario's worlds");
-    auto* pty = command->add_option("--link", arguments->link, "Give the pseudo-terminal this name, too");
+    auto* pty =
+        command->add_flag("--pty", arguments->isTerminal, "On a pseudo-terminal: what it does unless told otherwise");
+    auto* link = command->add_option("--link", arguments->link, "Give the pseudo-terminal this name, too");
     auto* tcp = command->add_option("--tcp", arguments->tcpPort, "Listen on this port of this computer; 0: any")
                     ->check(CLI::Range(0, 65535))
-                    ->excludes(pty);
+                    ->excludes(pty)
+                    ->excludes(link);
     command->add_flag("--stdio", arguments->stdio, "Speak on standard input and output, as exec: wants it")
         ->excludes(pty)
+        ->excludes(link)
         ->excludes(tcp);
     command->add_option("--baud", arguments->baud, "How fast wires are")
         ->check(CLI::Range(1200, 100'000'000))
@@ -231,9 +236,8 @@ void addVirtualSkinCommand(CommandLine& line) {
         ->add_option("--reset-every", arguments->resetEvery_s, "Seconds between two modules' losing power for a moment")
         ->check(CLI::NonNegativeNumber);
     command->footer(
-        "Prints where it can be reached: a pseudo-terminal, unless --tcp or --stdio is given. It obeys lines on "
-        "standard "
-        "input:\n  turn X Y Z, view N, kill MODULE, reset MODULE, unplug, plug, quit.");
+        "Prints where it can be reached: a pseudo-terminal, unless --tcp or --stdio is given. It obeys lines on\n"
+        "standard input:\n  turn X Y Z, view N, kill MODULE, reset MODULE, unplug, plug, quit.");
     command->callback([&line, arguments] { line.run = [arguments] { return runVirtualSkin(*arguments); }; });
 }
 

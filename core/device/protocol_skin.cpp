@@ -46,8 +46,8 @@ ProtocolSkin::ProtocolSkin(LineAddress address, std::vector<ModuleTemplate> temp
     connect(worker_, &SkinWorker::notShown, this, [this](const std::vector<CellNumber>& dark) {
         std::vector<ModuleId> modules;
         for (const CellNumber cell : dark)
-            if (const auto module = moduleOf_.find(cell); module != moduleOf_.end())
-                modules.push_back(module->second);
+            if (const auto module = moduleOf(cell))
+                modules.push_back(*module);
         if (state_ == State::Open)
             emit lightMissed(modules);
     });
@@ -114,9 +114,10 @@ void ProtocolSkin::adopt(const SkinNetwork& network, quint64 exploration) {
     }
     network_ = network;
     std::set<std::string> found;
+    moduleOf_.resize(network.cells.size() + network.missing.size() + 1);
     for (const NetworkCell& cell : network.cells) {
         const ModuleId module = modules_.idOf(cell);
-        moduleOf_.emplace(cell.number, module);
+        moduleOf_[cell.number] = module;
         cellOf_.emplace(module, cell.number);
         found.insert(cell.uniqueId);
     }
@@ -126,6 +127,10 @@ void ProtocolSkin::adopt(const SkinNetwork& network, quint64 exploration) {
     tellLight();
     if (std::exchange(asked_, false) || changed)
         emit explored(*skin);
+}
+
+std::optional<ModuleId> ProtocolSkin::moduleOf(CellNumber cell) const {
+    return cell < moduleOf_.size() ? moduleOf_[cell] : std::nullopt;
 }
 
 std::vector<LitCell> ProtocolSkin::cellsOf(const std::vector<LitModule>& lit) const {
@@ -158,11 +163,11 @@ std::vector<SilentModule> ProtocolSkin::silent() const {
     for (const CellNumber number : network_.missing) {
         SilentModule& one = silent.emplace_back(SilentModule{number, {}});
         for (const NetworkCell& cell : network_.cells) {
-            const auto module = moduleOf_.find(cell.number);
+            const auto module = moduleOf(cell.number);
             const bool hears = std::any_of(cell.heard.begin(), cell.heard.end(),
                                            [&](const NetworkCell::Heard& heard) { return heard.cell == number; });
-            if (hears && module != moduleOf_.end())
-                one.beside.push_back(module->second);
+            if (hears && module)
+                one.beside.push_back(*module);
         }
     }
     return silent;
@@ -202,8 +207,8 @@ void ProtocolSkin::emitAcceleration(const std::vector<RestReading>& readings, qi
     AccelerationSample sample;
     sample.time = std::chrono::microseconds(time_us);
     for (const RestReading& reading : readings)
-        if (const auto module = moduleOf_.find(reading.cell); module != moduleOf_.end())
-            sample.readings.push_back({module->second, reading.mean});
+        if (const auto module = moduleOf(reading.cell))
+            sample.readings.push_back({*module, reading.mean});
     if (state_ == State::Open && !sample.readings.empty())
         emit accelerationArrived(sample);
 }
@@ -212,9 +217,8 @@ void ProtocolSkin::emitTouch(const std::vector<CellTouch>& touches, qint64 time_
     TactileSample sample;
     sample.time = std::chrono::microseconds(time_us);
     for (const CellTouch& touch : touches)
-        if (const auto module = moduleOf_.find(touch.cell); module != moduleOf_.end())
-            sample.readings.push_back(
-                {module->second, touch.proximity, touch.force, touch.temperature, touch.acceleration});
+        if (const auto module = moduleOf(touch.cell))
+            sample.readings.push_back({*module, touch.proximity, touch.force, touch.temperature, touch.acceleration});
     if (state_ == State::Open && !sample.readings.empty())
         emit tactileArrived(sample);
 }

@@ -46,6 +46,7 @@ class ProtocolSkin : public SkinDevice {
 
     void adopt(const SkinNetwork& network, quint64 exploration);
     void forgetNumbers();
+    [[nodiscard]] std::optional<ModuleId> moduleOf(CellNumber cell) const;
     void tellLight(std::optional<std::chrono::microseconds> when = {});
     [[nodiscard]] std::vector<LitCell> cellsOf(const std::vector<LitModule>& lit) const;
     void emitAcceleration(const std::vector<RestReading>& readings, qint64 time_us);
@@ -56,9 +57,9 @@ class ProtocolSkin : public SkinDevice {
     ModuleRegister modules_;
     State state_ = State::Closed;
     quint64 opening_ = 0;
-    quint64 exploration_ = 0;  ///< that gave the numbers
-    bool asked_ = false;       ///< for an exploration
-    std::map<CellNumber, ModuleId> moduleOf_;
+    quint64 exploration_ = 0;                        ///< that gave the numbers
+    bool asked_ = false;                             ///< for an exploration
+    std::vector<std::optional<ModuleId>> moduleOf_;  ///< by cell number: it is asked a million times a second
     std::map<ModuleId, CellNumber> cellOf_;
     SkinNetwork network_;
     std::set<std::string> known_;  ///< unique ids of the last exploration

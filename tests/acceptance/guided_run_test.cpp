@@ -4,61 +4,35 @@
 #include <gtest/gtest.h>
 
 #include <QCoreApplication>
-#include <QDir>
 #include <QFile>
 #include <QProcess>
-#include <QTemporaryDir>
 #include <iostream>
-#include <mutex>
 
-#include "core/estimation/compare.h"
 #include "core/formats/body_json.h"
-#include "core/formats/camera_file.h"
-#include "core/rig/pseudo_terminal.h"
-#include "core/rig/wired_skin.h"
-#include "core/simulation/renderer.h"
-#include "core/workflow/simulated_recording.h"
-#include "tests/fixtures/virtual_camera/virtual_camera.h"
+#include "tests/fixtures/desk_with_wires.h"
 #include "tests/wait_for.h"
 
 namespace skincal {
 namespace {
 
-using test::VirtualCamera;
 using test::waitFor;
 
-constexpr auto kCameraName = "Webcam on the desk";
+constexpr auto kCameraName = test::DeskWithWires::kCameraName;
 
-/// Skin, body and camera on a desk, and somebody who does what files in a folder ask for.
-class DeskWithWires {
+/// The program at such a desk, and somebody who does what files in a folder ask for.
+class DeskWithWires : public test::DeskWithWires {
   public:
     explicit DeskWithWires(const char* scenario, const WireFaults& faults = {}, std::uint64_t seed = 5)
-        : rig_(*findScenario(scenario), seed), skin_(rig_, faults) {
-        rig_.setCameraLatency(std::chrono::milliseconds(0));
-        const CameraModel& lens = rig_.world().scenario.camera;
-        seen_.T_r_v = rig_.cameraPose();
-        renderer_ = std::make_unique<FrameRenderer>(rig_.world(), seen_.T_r_v, 0, 200);
-        camera_ = std::make_unique<VirtualCamera>(kCameraName, VirtualCamera::Kind{"i420", lens.width, lens.height, 20},
-                                                  [this](std::uint64_t k) { return paint(k); });
-        camera_->plug();
-        plugSkin();
-        QObject::connect(&terminal_, &PseudoTerminal::received, &skin_, &WiredSkin::receive);
-        QObject::connect(&skin_, &WiredSkin::sent, &terminal_, &PseudoTerminal::write);
-        look_.setInterval(10);
-        QObject::connect(&look_, &QTimer::timeout, &rig_, [this] { look(); });
-        look_.start();
-        EXPECT_TRUE(writeCameraModel(lensFile().toStdString(), lens));
+        : test::DeskWithWires(scenario, faults, seed) {
+        obey_.setInterval(10);
+        QObject::connect(&obey_, &QTimer::timeout, &obey_, [this] {
+            if (const auto pose = asked("pose", pose_))
+                turn(*pose);
+            if (const auto view = asked("view", view_))
+                moveCamera(*view);
+        });
+        obey_.start();
     }
-
-    [[nodiscard]] QString port() const { return file("skin"); }
-    [[nodiscard]] QString lensFile() const { return file("lens.yaml"); }
-    [[nodiscard]] QString file(const char* name) const { return QDir(folder_.path()).filePath(QLatin1String(name)); }
-    [[nodiscard]] SimulatedRig& rig() { return rig_; }
-    [[nodiscard]] WiredSkin& skin() { return skin_; }
-    [[nodiscard]] VirtualCamera& camera() { return *camera_; }
-
-    void plugSkin() { EXPECT_EQ(terminal_.open(file("skin")), QString()); }
-    void unplugSkin() { terminal_.close(); }
 
     /// Runs the program until it ends; its exit code.
     /// @param meanwhile  what somebody at the desk does, called again and again
@@ -87,32 +61,10 @@ class DeskWithWires {
             ++times;
         return times;
     }
-    /// A scan is under way.
-    [[nodiscard]] bool shines() const { return !rig_.litAt(rig_.now()).empty(); }
 
     std::string output;
 
   private:
-    struct Seen {
-        Isometry3d T_r_v = Isometry3d::Identity();
-        std::vector<LitModule> lit;
-    };
-
-    std::vector<std::uint8_t> paint(std::uint64_t k) {
-        Seen seen;
-        {
-            const std::scoped_lock lock(mutex_);
-            seen = seen_;
-        }
-        if (!seen.T_r_v.isApprox(drawn_)) {
-            renderer_->moveCamera(seen.T_r_v);
-            drawn_ = seen.T_r_v;
-        }
-        const cv::Mat picture = renderer_->render(seen.lit, k % 200);
-        return test::bytesOf("i420", picture.cols, picture.rows,
-                             {picture.begin<std::uint8_t>(), picture.end<std::uint8_t>()});
-    }
-
     /// A number in a file, where somebody has written a new one.
     [[nodiscard]] std::optional<int> asked(const char* name, int& last) const {
         QFile text(file(name));
@@ -126,56 +78,10 @@ class DeskWithWires {
         return number;
     }
 
-    void look() {
-        if (const auto pose = asked("pose", pose_)) {
-            static const std::array<Vector3d, 6> kUp{Vector3d(1, 0, 0),  Vector3d(0, 1, 0),  Vector3d(-1, 1, 1),
-                                                     Vector3d(0, -1, 1), Vector3d(1, 1, -1), Vector3d(-1, 0, -1)};
-            rig_.turnBody(kUp.at(static_cast<std::size_t>(*pose) % kUp.size()));
-        }
-        if (const auto view = asked("view", view_))
-            rig_.moveCamera(rig_.suggestedViews().at(static_cast<std::size_t>(*view) % rig_.suggestedViews().size()));
-        const std::scoped_lock lock(mutex_);
-        seen_.T_r_v = rig_.cameraPose();
-        seen_.lit = rig_.litAt(rig_.now());
-    }
-
-    QTemporaryDir folder_;
-    SimulatedRig rig_;
-    WiredSkin skin_;
-    PseudoTerminal terminal_;
-    QTimer look_;
-    std::mutex mutex_;
-    Seen seen_;
-    Isometry3d drawn_ = Isometry3d::Identity();
-    std::unique_ptr<FrameRenderer> renderer_;
+    QTimer obey_;
     int pose_ = -1;
     int view_ = -1;
-    std::unique_ptr<VirtualCamera> camera_;  // last: its thread paints
 };
-
-BodyComparison differenceFromTruth(const BodyModel& body, DeskWithWires& desk) {
-    // Numbers are the network's; unique ids say who is who.
-    const World& world = desk.rig().world();
-    std::map<std::string, std::size_t> places;
-    for (std::size_t i = 0; i < world.T_r_u.size(); ++i)
-        places[desk.skin().network().uniqueId(i)] = i;
-    std::vector<NamedPose> found;
-    std::vector<NamedPose> real;
-    const auto recording = readRecording(desk.file("desk.skinrec").toStdString());
-    EXPECT_TRUE(recording);
-    std::map<ModuleId, std::size_t> placeOf;
-    for (const SkinModule& module : recording->skin.modules)
-        placeOf[module.id] = places.at(module.uniqueId);
-    for (const BodyModule& module : body.modules) {
-        if (!module.T_body_module)
-            continue;
-        found.push_back({module.id, *module.T_body_module});
-        real.push_back({module.id, world.T_r_u[placeOf.at(module.id)]});
-    }
-    const auto difference = compareBodies(found, real);
-    EXPECT_TRUE(difference);
-    return difference.value_or(BodyComparison{});
-}
 
 TEST(GuidedRun, CalibratesASkinThroughASerialPortAndAWebcam) {
     DeskWithWires desk("demo");
@@ -186,25 +92,14 @@ TEST(GuidedRun, CalibratesASkinThroughASerialPortAndAWebcam) {
     EXPECT_EQ(code, 0) << desk.output;
     const auto body = readBody(desk.file("desk.body.json").toStdString());
     ASSERT_TRUE(body) << desk.output;
-    const BodyComparison difference = differenceFromTruth(*body, desk);
+    const auto recorded = readRecording(desk.file("desk.skinrec").toStdString());
+    ASSERT_TRUE(recorded);
+    const BodyComparison difference = desk.differenceFromTruth(*body, recorded->skin);
     EXPECT_EQ(difference.compared, desk.rig().world().T_r_u.size());
     // As exact as where the same world is recorded without any wire.
-    const World& world = desk.rig().world();
-    const Recording recording = recordingOf(world);
-    const auto simulated = calibrate(recording, framesOf(world, recording), {});
-    ASSERT_TRUE(simulated);
-    std::vector<NamedPose> found;
-    std::vector<NamedPose> real;
-    for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
-        ASSERT_TRUE(simulated->modules[u].T_body_module);
-        found.push_back({world.skin.modules[u].id, *simulated->modules[u].T_body_module});
-        real.push_back({world.skin.modules[u].id, world.T_r_u[u]});
-    }
-    const auto reference = compareBodies(found, real);
-    ASSERT_TRUE(reference);
-    std::cout << "position " << 1e3 * difference.positionRms << " mm rms, without wires "
-              << 1e3 * reference->positionRms << " mm\n";
-    EXPECT_LT(difference.positionRms, 1.25 * reference->positionRms) << desk.output;
+    const double reference = desk.errorWithoutWires();
+    std::cout << "position " << 1e3 * difference.positionRms << " mm rms, without wires " << 1e3 * reference << " mm\n";
+    EXPECT_LT(difference.positionRms, 1.25 * reference) << desk.output;
 }
 
 TEST(GuidedRun, OnABadWireItIsTheSame) {

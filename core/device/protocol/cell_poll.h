@@ -22,7 +22,8 @@ class CellPoll {
     static constexpr std::size_t kAtOnce = 192;
     static constexpr std::size_t kRange = 32;  ///< cells per request
     static constexpr Time kMostPatience{4'000'000};
-    static constexpr int kRounds = 8;  ///< without any answer, until those left are given up
+    static constexpr std::size_t kMostWaiting = 16;  ///< frames that wait to be sent, of which no more are made
+    static constexpr int kRounds = 8;                ///< without any answer, until those left are given up
 
     /// @param patience  without an answer, until who has not answered is asked again; grows where that was too soon
     CellPoll(std::vector<CellNumber> cells, Time patience, Time now);

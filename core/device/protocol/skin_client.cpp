@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/device/protocol/skin.pb.h"
+#include "core/device/protocol/wire_parse.h"
 
 namespace skincal {
 namespace {
@@ -13,8 +13,6 @@ using namespace std::chrono_literals;
 
 constexpr SkinClient::Time kFlood = 10s;
 constexpr SkinClient::Time kPatience = 250ms;
-constexpr SkinClient::Time kTally = 300ms;  // and for each cell:
-constexpr SkinClient::Time kTallyEach = 40us;
 constexpr SkinClient::Time kMarkEvery = 10s;
 /// Of silence, until the first cell is asked for a sign of life, and until it counts as gone.
 constexpr SkinClient::Time kQuiet = 250ms;
@@ -22,21 +20,12 @@ constexpr SkinClient::Time kQuiet = 250ms;
 constexpr SkinClient::Time kHelloAgain = 500ms;
 constexpr SkinClient::Time kSilent = 900ms;
 constexpr int kExplorations = 3;
-constexpr int kTallies = 4;
 constexpr int kContradictions = 4;
 
 /// What cells send wrong is counted and dropped; the library's remarks on it would only fill the error output.
 void silenceProtobuf() {
     static const auto before = google::protobuf::SetLogHandler(nullptr);
     static_cast<void>(before);
-}
-
-template <class T>
-std::optional<T> parse(std::string_view payload) {
-    T message;
-    if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size())))
-        return std::nullopt;
-    return message;
 }
 
 std::string hex(std::string_view bytes) {
@@ -49,18 +38,19 @@ std::string hex(std::string_view bytes) {
 }  // namespace
 
 SkinClient::SkinClient(SkinListener& listener, const ReliableLinkOptions& link, std::uint32_t seed)
-    : listener_(listener),
-      link_(link, static_cast<std::uint16_t>(seed)),
-      wordSet_(seed),
-      pattern_(static_cast<std::uint16_t>(seed >> 8)),
-      query_(static_cast<std::uint16_t>(seed >> 16)),
-      run_(seed) {
+    : listener_(listener), link_(link, static_cast<std::uint16_t>(seed)), lights_(listener, seed), run_(seed) {
     silenceProtobuf();
 }
 
 void SkinClient::send(Message message) {
     message.header.epoch = epoch_;
     link_.send(message.header, std::move(message.payload));
+}
+
+void SkinClient::sendOutgoing() {
+    for (Message& message : outgoing_)
+        send(std::move(message));
+    outgoing_.clear();
 }
 
 void SkinClient::sendLocal(FrameType type, std::string payload) {
@@ -90,8 +80,7 @@ void SkinClient::forget() {
     cells_ = 0;
     info_.reset();
     rest_.reset();
-    shown_.reset();
-    latched_.reset();
+    lights_.forget();
     link_.clear();
 }
 
@@ -150,7 +139,7 @@ void SkinClient::take(const FrameHeader& header, std::string_view payload, Time 
 void SkinClient::takeLocal(const FrameHeader& header, std::string_view payload, Time now) {
     switch (header.type) {
         case FrameType::Hello: {
-            const auto hello = parse<wire::Hello>(payload);
+            const auto hello = parseWire<wire::Hello>(payload);
             if (phase_ != Phase::Greeting || !hello || hello->please_answer())
                 return;
             if (hello->oldest_version() > FrameHeader::kVersion || hello->newest_version() < FrameHeader::kVersion) {
@@ -164,13 +153,13 @@ void SkinClient::takeLocal(const FrameHeader& header, std::string_view payload, 
             return;
         }
         case FrameType::Refused: {
-            const auto refused = parse<wire::Refused>(payload);
+            const auto refused = parseWire<wire::Refused>(payload);
             if (phase_ == Phase::Greeting && refused && refused->reason() == wire::Refused::OTHER_VERSION)
                 fail(SkinFault::OtherVersion);
             return;
         }
         case FrameType::Subtree:
-            if (const auto subtree = parse<wire::Subtree>(payload);
+            if (const auto subtree = parseWire<wire::Subtree>(payload);
                 subtree && header.epoch == epoch_ && phase_ == Phase::Flooding) {
                 const auto newest = static_cast<std::uint8_t>(subtree->newest_epoch());
                 if (newest != 0)
@@ -181,13 +170,15 @@ void SkinClient::takeLocal(const FrameHeader& header, std::string_view payload, 
             return;
         case FrameType::Explored:
             // It took us for somebody who came late: some other computer explores, or an old frame was about.
-            if (const auto explored = parse<wire::Explored>(payload);
+            if (const auto explored = parseWire<wire::Explored>(payload);
                 explored && header.epoch == epoch_ && phase_ == Phase::Flooding && !explored->child())
                 due_ = now;
             return;
         case FrameType::Tallied:
-            if (header.epoch == epoch_)
-                tallied(payload, now);
+            if (header.epoch != epoch_)
+                return;
+            lights_.takeTallied(payload, now, outgoing_);
+            sendOutgoing();
             return;
         case FrameType::Booted:
             if (phase_ == Phase::Describing || phase_ == Phase::Explored) {
@@ -243,7 +234,7 @@ void SkinClient::takeFromCell(const FrameHeader& header, std::string_view payloa
             takeRest(header.first, payload, unwrap(header.time_us, now), now);
             return;
         case FrameType::Latched:
-            takeLatched(header.first, payload, now);
+            lights_.takeLatched(header.first, payload, now);
             return;
         case FrameType::Tactile:
             takeTouches(payload, unwrap(header.time_us, now));
@@ -257,7 +248,7 @@ void SkinClient::takeFromCell(const FrameHeader& header, std::string_view payloa
 }
 
 void SkinClient::takeCellInfo(CellNumber number, std::string_view payload, Time now) {
-    const auto info = parse<wire::CellInfo>(payload);
+    const auto info = parseWire<wire::CellInfo>(payload);
     if (phase_ != Phase::Describing || !info || info->unique_id().size() != 12)
         return;
     NetworkCell cell;
@@ -284,7 +275,7 @@ void SkinClient::describe(Time now) {
     if (!info_)
         return;
     if (!info_->isOver()) {
-        pollCells(wire::CELL_INFO, info_, now);
+        pollCells(wire::CELL_INFO, *info_, now);
         return;
     }
     // Those that are missing have had their chances; of those that are there, some may have spoken too early.
@@ -308,102 +299,26 @@ void SkinClient::finishExploration() {
             network_.missing.push_back(static_cast<CellNumber>(number));
     std::erase_if(network_.cells, [&](const NetworkCell& cell) { return cell.number == 0; });
     phase_ = Phase::Explored;
-    wordsTold_ = words_.empty();
+    lights_.begin(allCells(), cells_);
     listener_.onExplored(network_);
 }
 
-void SkinClient::pollLatched(Time now) {
-    if (!latched_)
+void SkinClient::pollCells(int subject, CellPoll& poll, Time now) {
+    if (link_.waiting() > CellPoll::kMostWaiting)
         return;
-    if (!latched_->isOver()) {
-        pollCells(wire::LATCHED, latched_, now);
-        return;
-    }
-    const std::vector<CellNumber> silent = std::exchange(latched_, std::nullopt)->missing();
-    const std::uint64_t token = std::exchange(shown_, std::nullopt)->token;
-    dark_.insert(dark_.end(), silent.begin(), silent.end());
-    std::sort(dark_.begin(), dark_.end());
-    listener_.onNotShown(token, dark_);
-}
-
-void SkinClient::pollCells(int subject, std::optional<CellPoll>& poll, Time now) {
-    if (link_.waiting() > 16)
-        return;
-    wire::Report report;
-    report.set_subject(static_cast<wire::Subject>(subject));
-    report.set_run(run_);
-    for (const CellRange& range : poll->poll(now)) {
-        Message message;
-        message.header.type = FrameType::Report;
-        message.header.direction = FrameDirection::Down;
-        message.header.first = range.first;
-        message.header.count = range.count;
-        message.payload = report.SerializeAsString();
-        send(std::move(message));
-    }
+    for (const CellRange& range : poll.poll(now))
+        send(reportMessage(static_cast<wire::Subject>(subject), run_, range));
 }
 
 void SkinClient::prepare(std::vector<std::vector<LitCell>> sets) {
-    words_ = LedWords(std::move(sets), ++wordSet_);
-    wordsTold_ = false;
+    lights_.prepare(std::move(sets));
 }
 
 void SkinClient::light(const std::vector<LitCell>& lit, std::uint64_t token, Time now, std::optional<Time> when) {
     if (phase_ != Phase::Explored)
         return;
-    if (!wordsTold_)
-        for (Message& message : words_.messages(cells_))
-            send(std::move(message));
-    wordsTold_ = true;
-    shown_ = Shown{token, lit, ++pattern_, 0, 0, now, when};
-    latched_.reset();
-    showAgain(now);
-}
-
-void SkinClient::showAgain(Time now) {
-    if (shown_->tries == kTallies) {
-        dark_.clear();
-        latched_.emplace(allCells(), kPatience, now);
-        return;
-    }
-    // From the second time on, everything anew: masks and words may have been lost on the way.
-    if (shown_->tries > 0 && words_.find(shown_->lit))
-        for (Message& message : words_.messages(cells_))
-            send(std::move(message));
-    // What is over is at once; and 0 means that, too.
-    const bool isLater = shown_->when && *shown_->when > now;
-    for (Message& message : patternMessages(shown_->lit, cells_, shown_->number, words_)) {
-        if (isLater && message.header.type == FrameType::Pattern)
-            message.header.time_us = std::max(1U, static_cast<std::uint32_t>(shown_->when->count()));
-        send(std::move(message));
-    }
-    shown_->query = ++query_;
-    ++shown_->tries;
-    shown_->due =
-        (isLater ? *shown_->when : now) + (kTally + static_cast<Time::rep>(cells_) * kTallyEach) * shown_->tries;
-    wire::Tally tally;
-    tally.set_query(shown_->query);
-    tally.set_pattern(shown_->number);
-    sendAll(FrameType::Tally, tally.SerializeAsString());
-}
-
-void SkinClient::tallied(std::string_view payload, Time now) {
-    const auto answer = parse<wire::Tallied>(payload);
-    if (!answer || !shown_ || latched_ || answer->query() != shown_->query)
-        return;
-    if (answer->cells() == cells_)
-        listener_.onShown(std::exchange(shown_, std::nullopt)->token);
-    else
-        showAgain(now);
-}
-
-void SkinClient::takeLatched(CellNumber number, std::string_view payload, Time now) {
-    const auto latched = parse<wire::Latched>(payload);
-    if (!latched || !latched_ || !latched_->answered(number, now))
-        return;
-    const auto behind = static_cast<std::uint16_t>(latched->newest() - shown_->number);
-    if (behind >= 64 || (latched->shown() >> behind & 1U) == 0)
-        dark_.push_back(number);
+    lights_.light(lit, token, now, when, outgoing_);
+    sendOutgoing();
 }
 
 std::vector<CellNumber> SkinClient::allCells() const {
@@ -444,7 +359,7 @@ void SkinClient::streamTouch(std::chrono::milliseconds period, int change_pct) {
 }
 
 void SkinClient::takeRest(CellNumber number, std::string_view payload, Time when, Time now) {
-    const auto rest = parse<wire::Rest>(payload);
+    const auto rest = parseWire<wire::Rest>(payload);
     if (phase_ != Phase::Explored || !rest || rest->count() == 0 || rest->mean_size() != 3 ||
         rest->variance_size() != 3)
         return;
@@ -532,11 +447,10 @@ void SkinClient::poll(Time now, std::vector<std::uint8_t>& bytes) {
             describe(now);
             break;
         case Phase::Explored:
-            if (shown_ && !latched_ && now >= shown_->due)
-                showAgain(now);
-            pollLatched(now);
+            lights_.poll(now, link_.waiting(), outgoing_);
+            sendOutgoing();
             if (rest_ && !rest_->isOver())
-                pollCells(wire::REST, rest_, now);
+                pollCells(wire::REST, *rest_, now);
             if (rest_ && rest_->isOver()) {
                 const std::vector<CellNumber> missing = std::exchange(rest_, std::nullopt)->missing();
                 listener_.onRest(readings_, missing);
@@ -556,13 +470,11 @@ void SkinClient::poll(Time now, std::vector<std::uint8_t>& bytes) {
 void SkinClient::takeLeave(Time now, std::vector<std::uint8_t>& bytes) {
     if (phase_ != Phase::Explored)
         return;
-    shown_.reset();
-    latched_.reset();
     link_.clear();
     streamRest(std::chrono::milliseconds(0));
     streamTouch(std::chrono::milliseconds(0));
-    for (Message& message : patternMessages({}, cells_, ++pattern_, words_))
-        send(std::move(message));
+    lights_.darken(outgoing_);
+    sendOutgoing();
     link_.flush(now, bytes);
     phase_ = Phase::Closed;
 }
@@ -580,10 +492,8 @@ std::optional<SkinClient::Time> SkinClient::wakeAt() const {
         consider(info_->wakeAt());
     if (phase_ == Phase::Explored) {
         consider(nextMark_);
-        if (latched_)
-            consider(latched_->wakeAt());
-        else if (shown_)
-            consider(shown_->due);
+        if (const auto lights = lights_.wakeAt())
+            consider(*lights);
         if (rest_)
             consider(rest_->wakeAt());
     }

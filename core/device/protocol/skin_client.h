@@ -8,6 +8,7 @@
 
 #include "core/device/protocol/cell_poll.h"
 #include "core/device/protocol/led_patterns.h"
+#include "core/device/protocol/light_orders.h"
 #include "core/device/protocol/reliable_link.h"
 #include "core/device/protocol/skin_listener.h"
 
@@ -67,16 +68,6 @@ class SkinClient {
   private:
     enum class Phase { Closed, Greeting, Open, Flooding, Describing, Explored };
 
-    struct Shown {
-        std::uint64_t token = 0;
-        std::vector<LitCell> lit;
-        std::uint16_t number = 0;
-        std::uint16_t query = 0;
-        int tries = 0;
-        Time due{};
-        std::optional<Time> when{};
-    };
-
     void take(const FrameHeader& header, std::string_view payload, Time now);
     void takeLocal(const FrameHeader& header, std::string_view payload, Time now);
     void takeFromCell(const FrameHeader& header, std::string_view payload, Time now);
@@ -89,11 +80,7 @@ class SkinClient {
     void overtake(std::uint8_t epoch, Time now);
     void describe(Time now);
     void finishExploration();
-    void takeLatched(CellNumber number, std::string_view payload, Time now);
-    void tallied(std::string_view payload, Time now);
-    void showAgain(Time now);
-    void pollLatched(Time now);
-    void pollCells(int subject, std::optional<CellPoll>& poll, Time now);
+    void pollCells(int subject, CellPoll& poll, Time now);
     void listen(Time now);
     /// Those that have described themselves.
     [[nodiscard]] std::vector<CellNumber> allCells() const;
@@ -104,6 +91,7 @@ class SkinClient {
     void sendLocal(FrameType type, std::string payload = {});
     void sendAll(FrameType type, std::string payload = {});
     void send(Message message);
+    void sendOutgoing();
     /// The time of a cell's 32-bit clock on ours, given that it is about now.
     [[nodiscard]] static Time unwrap(std::uint32_t time_us, Time now);
 
@@ -124,16 +112,10 @@ class SkinClient {
     std::optional<CellPoll> info_;
     int rounds_ = 0;  ///< of asking those whose neighbours contradict them
 
-    LedWords words_;
-    bool wordsTold_ = true;
-    std::uint32_t wordSet_ = 0;
-    std::optional<Shown> shown_;
-    std::optional<CellPoll> latched_;  ///< whoever is asked for what it showed: the tallies of shown_ did not add up
-    std::vector<CellNumber> dark_;     ///< of those that answered
-    std::uint16_t pattern_ = 0;
-    std::uint16_t query_ = 0;
-    std::uint32_t run_ = 0;    ///< of measurements at rest
-    std::uint16_t order_ = 0;  ///< of streams
+    LightOrders lights_;
+    std::vector<Message> outgoing_;  ///< of lights_, on their way to the link
+    std::uint32_t run_ = 0;          ///< of measurements at rest
+    std::uint16_t order_ = 0;        ///< of streams
 
     std::optional<CellPoll> rest_;
     std::vector<RestReading> readings_;

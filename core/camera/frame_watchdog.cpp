@@ -1,7 +1,6 @@
 #include "core/camera/frame_watchdog.h"
 
 #include <algorithm>
-#include <opencv2/core.hpp>
 #include <stdexcept>
 
 #include "core/vision/light_change.h"
@@ -10,15 +9,6 @@ namespace skincal {
 namespace {
 
 constexpr int kBars = 7;
-
-/// What a camera gives of a dark room where its noise is below a step: as much alike as pictures of a lens with its cap
-/// on, and no sign of a fault.
-bool isOfOneLevel(const cv::Mat& picture) {
-    double least = 0;
-    double most = 0;
-    cv::minMaxIdx(picture.reshape(1), &least, &most);
-    return least == most;
-}
 
 }  // namespace
 

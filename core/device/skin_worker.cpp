@@ -130,9 +130,11 @@ void SkinWorker::forgetNumbers() {
 }
 
 void SkinWorker::lose(LineFault fault, const QString& detail) {
+    // Whatever ends a line that was open: systems have many words for a plug that was pulled.
+    const bool wasOpen = client_ != nullptr;
     fail(lineHelp(fault, address_, detail));
     const bool isAgain = isReturning_;
-    isReturning_ = isAgain || fault == LineFault::Ended;
+    isReturning_ = isAgain || wasOpen;
     if (isReturning_)
         watchPort(isAgain && fault != LineFault::Ended ? kWatchAgain : kWatch);
 }
@@ -251,6 +253,8 @@ void SkinWorker::onFault(SkinFault fault) {
         if (!client_)
             return;
         fail(wordsFor(fault, address_));
+        // A skin that fell silent may have been left without power for a moment.
+        isReturning_ = isReturning_ || fault == SkinFault::Silenced;
         // Plugged in again, it may take its time to start, or be pulled in the middle of that.
         if (isReturning_)
             watchPort(kWatch);

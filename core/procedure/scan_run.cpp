@@ -98,6 +98,8 @@ struct Stepper {
         lightNext(result);
     }
     [[nodiscard]] std::chrono::milliseconds settle() const {
+        if (state.slowest == Time{})
+            return std::max(options.settle, options.toggleShows);
         const Time seen = state.slowest + options.timing.minMargin;
         return std::max(options.settle, std::chrono::ceil<std::chrono::milliseconds>(seen));
     }
@@ -255,6 +257,7 @@ struct Stepper {
         result.state.left = allFrames(start.frames);
         result.state.isTimed = start.toggles != Toggles::None && start.frames > kAllLit;
         result.state.keepsTime = start.toggles == Toggles::GivenTime;
+        result.state.slowest = start.slowest;
         begin(result);
         return result;
     }

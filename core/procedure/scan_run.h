@@ -54,11 +54,11 @@ struct ScanRun {
     Time showsFrom{};
     Fault fault = Fault::None;  ///< in Phase::Failed
 
-    bool isTimed = false;                 ///< light is being timed, or was
-    int timings = 0;                      ///< how often it was begun
-    bool keepsTime = false;               ///< the skin lights at a given time
-    std::vector<LightToggle> toggles{};   ///< the last one under way; their shares are changes while it is
-    Time slowest{};                       ///< toggle, from its command to the picture that was sure to show it
+    bool isTimed = false;                ///< light is being timed, or was
+    int timings = 0;                     ///< how often it was begun
+    bool keepsTime = false;              ///< the skin lights at a given time
+    std::vector<LightToggle> toggles{};  ///< the last one under way; their shares are changes while it is
+    Time slowest{};  ///< toggle, from its command to the picture that was sure to show it; 0: there was none yet
     std::optional<LightTiming> timing{};  ///< once it is known; also where it is of no use
     std::optional<LightPlan> plan{};      ///< where it is of use
     std::vector<LightShow> shows{};       ///< those that a picture may still show
@@ -86,8 +86,9 @@ struct ScanRunOptions {
     /// Shows in a row without a picture, from which on they are lit one by one.
     int maxMisses = 10;
 
-    /// One by one, from the acknowledgement of a light command to the exposure that certainly shows it; longer where
-    /// toggles took longer.
+    /// One by one, from the acknowledgement of a light command to the exposure that certainly shows it, at least: as
+    /// long as toggles took, and toggleShows where none ever told. A camera that is later than believed gives every
+    /// picture to the pattern after its own, and nothing in them says so.
     std::chrono::milliseconds settle{100};
     std::chrono::milliseconds lightAnswers{500};
     /// From then to the picture at the latest.
@@ -116,6 +117,7 @@ enum class Toggles {
 struct Start {
     std::size_t frames = 0;
     Toggles toggles = Toggles::None;
+    Time slowest{};  ///< ScanRun::slowest of an earlier scan with this camera, 0 where there was none
 };
 /// What SkinDevice::light returned for the effect Light.
 struct LightCommanded {

@@ -61,6 +61,19 @@ class Session::ReplaceCommand : public QUndoCommand {
     DecisionChange change_;
 };
 
+namespace {
+
+/// What no check has foreseen must not be lost on a thread that nobody listens to.
+tl::expected<OpenedRecording, std::string> readOrExplain(const std::string& directory, const RunContext& context) {
+    try {
+        return readSession(directory, context);
+    } catch (const std::exception& error) {
+        return tl::unexpected(directory + ": it can't be read: " + error.what());
+    }
+}
+
+}  // namespace
+
 Session::Session(QObject* parent) : QObject(parent), undoStack_(this), solver_(this) {
     files_.setMaxThreadCount(1);  // one after the other
     connect(&solver_, &Solver::solved, this, [this](std::shared_ptr<const Solution> solution) {
@@ -196,7 +209,7 @@ void Session::open(const QString& directory) {
             RunContext context;
             context.isCancelled = [cancelled] { return cancelled->load(); };
             auto recording = std::make_shared<tl::expected<OpenedRecording, std::string>>(
-                readSession(directory.toStdString(), context));
+                readOrExplain(directory.toStdString(), context));
             const auto deliver = [self, directory, recording, cancelled] {
                 if (!self || cancelled->load())
                     return;

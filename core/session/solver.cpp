@@ -70,28 +70,35 @@ void Solver::startNext() {
     auto work = [self = QPointer<Solver>(this), context = contextOf(this, cancelled_), request, run,
                  start = std::move(start)] {
         const auto deliver = [&](auto function) { QMetaObject::invokeMethod(self, function, Qt::QueuedConnection); };
-        auto solution = solve(request.measurements, request.revision, start.get(), context);
-        if (!solution && solution.error().code != ErrorCode::Cancelled) {
-            deliver([self, run, why = solution.error().sentence(), revision = request.revision] {
+        const auto complain = [&](const Sentence& why) {
+            deliver([self, run, why, revision = request.revision] {
                 if (self && self->run_ == run)
                     emit self->failed(why, revision);
             });
-        }
-        if (solution) {
-            deliver([self, run, snapshot = *solution] {
-                if (!self || self->run_ != run)
-                    return;
-                self->last_ = snapshot;
-                // Unless somebody already asked for more, all of which was counted since the solution before.
-                if (!self->next_)
-                    self->grewSinceLast_ = true;
-                emit self->solved(snapshot);
-            });
-            auto guidance = std::make_shared<const Guidance>(guidanceFor(**solution, context));
-            deliver([self, run, guidance, isCancelled = context.isCancelled()] {
-                if (self && self->run_ == run && !isCancelled)
-                    emit self->guided(guidance);
-            });
+        };
+        // What no check has foreseen must not be lost on a thread that nobody listens to.
+        try {
+            auto solution = solve(request.measurements, request.revision, start.get(), context);
+            if (!solution && solution.error().code != ErrorCode::Cancelled)
+                complain(solution.error().sentence());
+            if (solution) {
+                deliver([self, run, snapshot = *solution] {
+                    if (!self || self->run_ != run)
+                        return;
+                    self->last_ = snapshot;
+                    // Unless somebody already asked for more, all of which was counted since the solution before.
+                    if (!self->next_)
+                        self->grewSinceLast_ = true;
+                    emit self->solved(snapshot);
+                });
+                auto guidance = std::make_shared<const Guidance>(guidanceFor(**solution, context));
+                deliver([self, run, guidance, isCancelled = context.isCancelled()] {
+                    if (self && self->run_ == run && !isCancelled)
+                        emit self->guided(guidance);
+                });
+            }
+        } catch (const std::exception& error) {
+            complain(Sentence::saying("internal error: {}", error.what()));
         }
         deliver([self] {
             if (self)

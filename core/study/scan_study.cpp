@@ -133,11 +133,25 @@ void score(const World& world, const ViewDetections& view, const std::vector<std
         visible[u] = visiblePixel(world, kView, u).has_value();
         result.visible += visible[u] ? 1U : 0U;
     }
+    std::vector<std::vector<Vector2d>> placesOfAll(world.T_r_u.size());
+    for (std::size_t u = 0; u < placesOfAll.size(); ++u) {
+        if (visible[u])
+            placesOfAll[u] = placesOf(world, u);
+    }
+    const auto isNearerToAnother = [&](std::size_t own, const Vector2d& pixel, double error) {
+        for (std::size_t u = 0; u < placesOfAll.size(); ++u) {
+            if (u != own && distanceTo(placesOfAll[u], pixel) < error)
+                return true;
+        }
+        return false;
+    };
     for (const LedDetection& found : view.found) {
         const std::size_t u = index.at(found.module);
         const std::vector<Vector2d> places = placesOf(world, u);
         const double error = distanceTo(places, found.pixel);
-        if (error > ScanScore::kElsewhere_px) {
+        // Where they are a few pixels apart, that is little; errors are hundredths elsewhere.
+        constexpr double kNear_px = 0.5;
+        if (error > ScanScore::kElsewhere_px || (error > kNear_px && isNearerToAnother(u, found.pixel, error))) {
             ++result.wrong;
         } else if (visible[u]) {
             ++result.found;

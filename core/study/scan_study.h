@@ -54,7 +54,8 @@ struct ScanScore {
     std::size_t visible = 0;   ///< modules that face the camera, in the picture and not hidden by the body
     std::size_t found = 0;     ///< of these, where they are
     std::size_t choices = 0;   ///< of these, not found, but among the spots that were handed on to choose from
-    std::size_t wrong = 0;     ///< modules, visible or not, that were reported more than `kElsewhere_px` off
+    std::size_t wrong = 0;     ///< modules, visible or not, that were reported more than `kElsewhere_px` off, or
+                               ///< nearer to another module's LED than to their own
     double squaredError = 0;   ///< px^2, sum over found and both axes
     double squaredSigmas = 0;  ///< the same in units of the reported standard deviation
     std::size_t sharp = 0;     ///< of the found, those that are not clipped and that centreBounds has a bound of

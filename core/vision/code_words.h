@@ -21,7 +21,7 @@ struct CodeWords {
 /// words or more never need more than two bits above it, from 2,049 on one:
 ///   words      7   55  200  1,000  10,000
 ///   bits       6   10   12     14      19
-///   bound      6    9   12     14      18
+///   bound      6   10   12     14      18
 /// Ref: Hamming, Bell System Technical Journal 29, 1950.
 /// Throws std::logic_error where more than 67 million words are asked for.
 [[nodiscard]] CodeWords codeWords(std::size_t count);

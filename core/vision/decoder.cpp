@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/vision/frame_pass.h"
+#include "core/vision/late_pictures.h"
 #include "core/vision/looks.h"
 #include "core/vision/parallel.h"
 #include "core/vision/scan_motion.h"
@@ -62,7 +63,7 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
         verdicts.unexplained() + static_cast<std::size_t>(std::count_if(
                                      result.undetected.begin(), result.undetected.end(), [](const Undetected& one) {
                                          return one.cause == Cause::Alike || one.cause == Cause::NotAnLed ||
-                                                one.cause == Cause::TooBright;
+                                                one.cause == Cause::TooBright || one.cause == Cause::TooWeak;
                                      }));
     return result;
 }
@@ -113,6 +114,13 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
         if (!matched)
             return tl::unexpected(ScanError{Sentence::saying("cancelled"), true});
         matches = *std::move(matched);
+        if (const auto late = picturesLate(scan, matches.size(), options.words))
+            return tl::unexpected(ScanError{
+                Sentence::saying("{}: each picture shows what was lit {} before it: the camera is later than it was "
+                                 "waited for",
+                                 frames.front().file,
+                                 *late == 1 ? Sentence::saying("one picture") : Sentence::saying("two pictures")),
+                false});
         prepareMaps(scan, size, options, matches, motion);
     }
     if (!matches.empty()) {

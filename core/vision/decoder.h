@@ -51,8 +51,9 @@ struct DecoderOptions {
 /// @param modules  all modules of the skin; a frame that lights any other is an error
 /// @param frames   in the order in which they were taken
 /// @param load     called for each frame up to three times
-/// Fails with a sentence on a loader error (passed on), frames of different sizes, lit sets that make no sense, and
-/// "cancelled". Throws std::logic_error on invalid options.
+/// Fails with a sentence on a loader error (passed on), frames of different sizes, lit sets that make no sense,
+/// pictures that show what was lit before them (picturesLate), and "cancelled". Throws std::logic_error on invalid
+/// options.
 [[nodiscard]] tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<const ModuleId> modules,
                                                                  std::span<const FrameInfo> frames,
                                                                  const FrameLoader& load,

@@ -12,6 +12,10 @@ tl::expected<FramePixels, Sentence> FramePixels::make(cv::Mat picture, const std
         return tl::unexpected(Sentence::saying("{}: the picture is empty", file));
     if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3))
         return tl::unexpected(Sentence::saying("{}: expected an 8-bit grey or colour picture", file));
+    constexpr int kSmallest = 4;
+    if (picture.cols < kSmallest || picture.rows < kSmallest)
+        return tl::unexpected(Sentence::saying("{}: expected at least {} x {} pixels, found {} x {}", file, kSmallest,
+                                               kSmallest, picture.cols, picture.rows));
     if (expected.area() > 0 && picture.size() != expected)
         return tl::unexpected(
             Sentence::saying("{}: expected {} x {} pixels as in the view's other frames, found {} x {}", file,

@@ -13,8 +13,8 @@ namespace skincal {
 /// A loaded frame, checked, with access to the pixels of its planes.
 class FramePixels {
   public:
-    /// Fails when the picture is empty, not 8-bit with 1 or 3 channels, of another size than `expected` (if that is not
-    /// empty), or grey where colours were lit.
+    /// Fails when the picture is empty or smaller than 4 x 4 pixels, not 8-bit with 1 or 3 channels, of another size
+    /// than `expected` (if that is not empty), or grey where colours were lit.
     [[nodiscard]] static tl::expected<FramePixels, Sentence> make(cv::Mat picture, const std::string& file,
                                                                   cv::Size expected, bool coloured);
 

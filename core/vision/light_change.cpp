@@ -23,6 +23,13 @@ double lightChange(const cv::Mat& picture, const cv::Mat& reference) {
     return gained(picture, reference) - gained(reference, picture);
 }
 
+bool isOfOneLevel(const cv::Mat& picture) {
+    double least = 0;
+    double most = 0;
+    cv::minMaxIdx(picture.reshape(1), &least, &most);
+    return least == most;
+}
+
 bool isSamePicture(const cv::Mat& a, const cv::Mat& b) {
     if (a.size() != b.size() || a.type() != b.type())
         return false;

@@ -10,7 +10,10 @@ namespace skincal {
 /// @param picture, reference  8 bit; 0 where they don't have the same size and type
 [[nodiscard]] double lightChange(const cv::Mat& picture, const cv::Mat& reference);
 
-/// Whether two pictures agree in every pixel, as no two of a camera do: it has noise.
+/// Whether all pixels are alike, as in the dark where a camera's noise is below a step.
+[[nodiscard]] bool isOfOneLevel(const cv::Mat& picture);
+
+/// Whether two pictures agree in every pixel, as no two of a camera do, but for those of one level: it has noise.
 [[nodiscard]] bool isSamePicture(const cv::Mat& a, const cv::Mat& b);
 
 }  // namespace skincal

@@ -45,8 +45,7 @@ std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, st
                 matches.push_back({candidates[i], i, std::move(match), {}, {}});
                 break;
             case SeriesVerdict::Ambiguous:
-                if (match.runnerUp)
-                    verdicts.countUnexplained();
+                verdicts.countUnexplained();
                 for (const std::size_t word : match.words) {
                     verdicts.note(word, DetectionVerdict::Ambiguous,
                                   match.runnerUp ? Undetected::Cause::Alike : Undetected::Cause::TooWeak,

@@ -59,7 +59,7 @@ void PictureSeries::start(LitSets lit) {
     before_ = 0;
     if (workbench_.skin() != nullptr)
         workbench_.skin()->prepare(lit_);
-    handle(scan_run::Start{lit_.size(), toggles()});
+    handle(scan_run::Start{lit_.size(), toggles(), workbench_.cameraLag()});
 }
 
 void PictureSeries::extend(const LitSets& more) {
@@ -146,7 +146,8 @@ void PictureSeries::attachCamera() {
 
 void PictureSeries::take(const CameraFrame& frame) {
     // One that comes twice shows what was lit before, whatever its time says.
-    const bool isAgain = !workbench_.camera()->mayStandStill() && isSamePicture(frame.image, newest_.image);
+    const bool isAgain = !workbench_.camera()->mayStandStill() && isSamePicture(frame.image, newest_.image) &&
+                         !isOfOneLevel(frame.image);
     newest_ = frame;
     if (!state_.isRunning() || isAgain)
         return;
@@ -192,6 +193,7 @@ void PictureSeries::handle(const scan_run::Event& event) {
     const ScanRun before = state_;
     const auto [state, effects] = step(state_, event);
     state_ = state;
+    workbench_.noteCameraLag(state_.slowest);
     if (state_.phase == ScanRun::Phase::Paused && !paused_)
         paused_ = now();
     else if (state_.isRunning() && paused_)

@@ -66,7 +66,8 @@ void ScanPresenter::start(const std::optional<std::string>& replaced) {
     if (!obstacle().isEmpty())
         return;
     // Words change from scan to scan: what two modules that look alike confuse in one view they don't in the next.
-    const std::uint64_t seed = workbench_.session().measured().views.size();
+    const std::uint64_t seed = std::max<std::uint64_t>(scans_, workbench_.session().measured().views.size());
+    scans_ = seed + 1;
     LitSets lit = codedScan(modules(), seed);
     firstLook_ = lit.size();
     further_.emplace(seed);
@@ -174,8 +175,12 @@ void ScanPresenter::decode() {
         before = result_->view.decoded;
     decoding_.setFuture(QtConcurrent::run([taken = series_.taken(), modules = modules(), before = std::move(before),
                                            context = std::move(context)]() mutable {
-        return std::make_shared<Outcome>(
-            decodeScan(std::move(taken.frames), std::move(taken.pictures), modules, context, before));
+        try {
+            return std::make_shared<Outcome>(
+                decodeScan(std::move(taken.frames), std::move(taken.pictures), modules, context, before));
+        } catch (const std::exception& error) {
+            return std::make_shared<Outcome>(tl::unexpected(Sentence::saying("internal error: {}", error.what())));
+        }
     }));
 }
 

@@ -98,6 +98,7 @@ class ScanPresenter : public QObject {
     std::optional<FurtherLooks> further_;
     std::optional<ScanResult> result_;  ///< of all looks so far, should the next one be broken off
     bool looksAgain_ = true;
+    std::uint64_t scans_ = 0;  ///< that were begun
     bool isKept_ = false;
     CameraFrame newest_;
     std::shared_ptr<std::atomic<bool>> cancelled_;

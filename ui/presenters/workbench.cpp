@@ -14,6 +14,7 @@ void Workbench::chooseSkin(std::size_t offer) {
 void Workbench::chooseCamera(std::size_t offer) {
     camera_ = cameraOffers.at(offer).make();
     chosenCamera_ = static_cast<int>(offer);
+    cameraLag_ = {};
     emit cameraChosen();
 }
 

@@ -2,6 +2,8 @@
 
 #include <QObject>
 #include <QString>
+#include <algorithm>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -80,6 +82,11 @@ class Workbench : public QObject {
     [[nodiscard]] bool isScanning() const { return isScanning_; }
     void setScanning(bool scanning);
 
+    /// From a command to the skin to the picture of the chosen camera that was sure to show it, at the longest, as far
+    /// as scans have found out; 0: none has yet.
+    [[nodiscard]] std::chrono::microseconds cameraLag() const { return cameraLag_; }
+    void noteCameraLag(std::chrono::microseconds lag) { cameraLag_ = std::max(cameraLag_, lag); }
+
   signals:
     void skinChosen();
     void cameraChosen();
@@ -99,6 +106,7 @@ class Workbench : public QObject {
     int chosenCamera_ = -1;
     bool isSkinReady_ = false;
     bool isScanning_ = false;
+    std::chrono::microseconds cameraLag_{};
 };
 
 }  // namespace skincal

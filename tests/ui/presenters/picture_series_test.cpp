@@ -61,6 +61,7 @@ TEST(PictureSeries, KeepsPicturesOfAVideoThoughNothingMoves) {
     workbench.cameraOffers.push_back({"video", "", [] { return std::make_unique<StillVideo>(); }});
     workbench.chooseSkin(0);
     workbench.chooseCamera(0);
+    workbench.noteCameraLag(50ms);  // as a scan before found
     auto& skin = static_cast<PatientSkin&>(*workbench.skin());
     auto& video = static_cast<StillVideo&>(*workbench.camera());
     PictureSeries series(workbench);
@@ -82,6 +83,7 @@ TEST(PictureSeries, KeepsNoPictureThatWasExposedBeforeItsLightShowed) {
     workbench.cameraOffers.push_back({"camera", "", [] { return std::make_unique<LateCamera>(); }});
     workbench.chooseSkin(0);
     workbench.chooseCamera(0);
+    workbench.noteCameraLag(50ms);  // as a scan before found
     auto& skin = static_cast<PatientSkin&>(*workbench.skin());
     auto& camera = static_cast<LateCamera&>(*workbench.camera());
     PictureSeries series(workbench);
@@ -111,6 +113,7 @@ TEST(PictureSeries, TimeLeftIsThePaceOfThePicturesWithoutPauses) {
     workbench.cameraOffers.push_back({"camera", "", [] { return std::make_unique<LateCamera>(); }});
     workbench.chooseSkin(0);
     workbench.chooseCamera(0);
+    workbench.noteCameraLag(50ms);  // as a scan before found
     auto& skin = static_cast<PatientSkin&>(*workbench.skin());
     auto& camera = static_cast<LateCamera&>(*workbench.camera());
     PictureSeries series(workbench);

@@ -34,7 +34,7 @@ class AProtocolSkin : public testing::Test {
           link(QDir(directory.path()).filePath(QStringLiteral("skin"))),
           device((plug(), parseLineAddress(link).value()), allTemplates()) {
         QObject::connect(&terminal, &PseudoTerminal::received, &rig, [this](const QByteArray& b) {
-            if (wired)
+            if (wired && isPowered)
                 wired->receive(b);
         });
         QObject::connect(wired.get(), &WiredSkin::sent, &terminal, &PseudoTerminal::write);
@@ -83,6 +83,7 @@ class AProtocolSkin : public testing::Test {
     QTemporaryDir directory;
     SimulatedRig rig;
     std::unique_ptr<WiredSkin> wired;
+    bool isPowered = true;
     QString link;
     PseudoTerminal terminal;
     ProtocolSkin device;
@@ -302,6 +303,22 @@ TEST_F(AProtocolSkin, HangsOnAGatewayJustAsWell) {
         why.clear();
         shown = 0;
     }
+}
+
+TEST_F(AProtocolSkin, ThatFellSilentIsLookedForUntilItAnswers) {
+    openIt();
+    exploreIt();
+    QObject::connect(&device, &SkinDevice::cameBack, &device, [&] { device.open(); });
+    const QSignalSpy opened(&device, &SkinDevice::opened);
+    isPowered = false;
+    ASSERT_TRUE(waitFor([&] { return failure.has_value(); }));
+    EXPECT_TRUE(failure->contains(QLatin1String("no longer answers"))) << failure->toStdString();
+    EXPECT_TRUE(opened.empty());
+    isPowered = true;
+    ASSERT_TRUE(waitFor([&] { return !opened.empty(); }));
+    failure.reset();
+    exploreIt();
+    EXPECT_EQ(explored.modules.size(), rig.world().skin.modules.size());
 }
 
 TEST_F(AProtocolSkin, ASilentPortSaysSo) {

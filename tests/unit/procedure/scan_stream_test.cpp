@@ -32,6 +32,7 @@ struct Desk {
     bool isHasty = false;  ///< the skin lights at once whenever it is told to
     double deaf = 0;       ///< share of commands that are never acknowledged
     double visible = 1;    ///< share of the LEDs' light that the camera sees
+    Time known{};          ///< how late the camera was in an earlier scan
 };
 
 /// Carries out what the machine asks for, in simulated time.
@@ -43,7 +44,7 @@ class Bench {
     void run(std::size_t frames) {
         frames_ = frames;
         const Time began = now_;
-        send(Start{frames, desk_.toggles});
+        send(Start{frames, desk_.toggles, desk_.known});
         expose(between(0us, desk_.period));
         while (state.isRunning() || state.phase == Phase::Paused) {
             ASSERT_LT(now_ - began, 300s) << "hangs";
@@ -305,6 +306,30 @@ TEST(ScanStream, OneByOneWhereLightCannotBeTimed) {
         EXPECT_EQ(bench.state.phase, Phase::Decoding);
         EXPECT_EQ(bench.wrong, 0) << seed;
         EXPECT_FALSE(bench.streamed) << seed;
+    }
+}
+
+// Neither too little light to time it by nor a list that is too short for it makes a late camera's picture another's.
+TEST(ScanStream, WhatCannotBeTimedIsWaitedForAsLongAsAnyCameraTakes) {
+    Random random(9, "late");
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        Desk desk;
+        desk.visible = 0.04;
+        desk.latency = std::chrono::milliseconds(20 + random.index(600));
+        desk.toggles = std::array{Toggles::None, Toggles::AtOnce, Toggles::GivenTime}.at(seed % 3);
+        Bench bench(desk, seed);
+        bench.run(10);
+        ASSERT_EQ(bench.state.phase, Phase::Decoding) << seed;
+        EXPECT_EQ(bench.wrong, 0) << seed << ", latency " << desk.latency.count();
+        EXPECT_FALSE(bench.streamed);
+        // An earlier scan knew better.
+        desk.known = desk.latency + 50ms;
+        Bench again(desk, seed);
+        again.run(10);
+        EXPECT_EQ(again.wrong, 0) << seed;
+        if (desk.latency < 300ms) {
+            EXPECT_LT(again.took, bench.took) << seed;
+        }
     }
 }
 

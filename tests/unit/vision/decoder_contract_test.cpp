@@ -5,6 +5,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "core/vision/coded_scan.h"
 #include "tests/unit/vision/decoded.h"
 
 namespace skincal::testing {
@@ -101,6 +102,39 @@ TEST(Decoder, LoaderErrorsArePassedOn) {
         ASSERT_FALSE(view.has_value());
         EXPECT_EQ(view.error().message, "views/000/00004.png: the disk is gone");
         EXPECT_FALSE(view.error().cancelled);
+    }
+}
+
+TEST(Decoder, PicturesOfACameraThatIsLaterThanBelievedAreRefused) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed)
+        for (const std::size_t late : {1, 2}) {
+            Random random(seed, "late");
+            ScanPainter scan;
+            scan.seed = seed;
+            scan.leds = scatterLeds(random, 20, scan.size);
+            const std::vector<ModuleId> modules = scan.modules();
+            scan.frames.clear();
+            for (auto& lit : codedScan(modules, seed))
+                scan.frames.push_back({"a.png", std::move(lit)});
+            EXPECT_EQ(expectNoneWrong(scan, decode(scan)), scan.leds.size()) << "in time";
+            const FrameLoader lateBy = [&](std::size_t k) { return scan.loader()(k - std::min(k, late)); };
+            const auto view = decodeView("view", modules, scan.frames, lateBy);
+            ASSERT_FALSE(view.has_value()) << late;
+            EXPECT_THAT(view.error().message.english(),
+                        ::testing::HasSubstr(late == 1 ? "a.png: each picture shows what was lit one picture before it"
+                                                       : "what was lit two pictures before it"));
+        }
+}
+
+TEST(Decoder, PicturesThatAreTooSmallToHoldALedAreRefused) {
+    ScanPainter scan = smallScan();
+    for (const cv::Size size : {cv::Size(1, 1), cv::Size(640, 1), cv::Size(1, 480), cv::Size(3, 3)}) {
+        const FrameLoader load = [&](std::size_t) -> tl::expected<cv::Mat, std::string> {
+            return cv::Mat(size, CV_8UC1, cv::Scalar(7));
+        };
+        const auto view = decodeView("view", scan.modules(), scan.frames, load);
+        ASSERT_FALSE(view.has_value());
+        EXPECT_THAT(view.error().message.english(), ::testing::HasSubstr("expected at least 4 x 4 pixels"));
     }
 }
 

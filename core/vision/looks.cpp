@@ -12,20 +12,61 @@
 namespace skincal {
 namespace {
 
-const LedDetection* findIn(const std::vector<LedDetection>& found, ModuleId module) {
-    const auto at =
-        std::find_if(found.begin(), found.end(), [&](const LedDetection& other) { return other.module == module; });
-    return at == found.end() ? nullptr : &*at;
+using PlaceOf = std::map<ModuleId, std::size_t>;
+
+template <class Entry>
+PlaceOf placesIn(const std::vector<Entry>& entries) {
+    PlaceOf places;
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        places.emplace(entries[i].module, i);
+    return places;
 }
+
+/// Spots by where they are, to find those that are nearer to a place than so far.
+class Nearby {
+  public:
+    Nearby(std::span<const LedDetection> spots, double reach_px) : spots_(spots), reach_px_(reach_px) {
+        for (std::size_t i = 0; i < spots.size(); ++i)
+            cells_[cellOf(spots[i].pixel)].push_back(i);
+    }
+    /// The first of them, null where there is none.
+    [[nodiscard]] const LedDetection* first(const Vector2d& pixel) const {
+        const auto [column, row] = cellOf(pixel);
+        std::size_t first = spots_.size();
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy) {
+                const auto cell = cells_.find({column + dx, row + dy});
+                if (cell == cells_.end())
+                    continue;
+                for (const std::size_t i : cell->second) {
+                    if ((spots_[i].pixel - pixel).norm() < reach_px_)
+                        first = std::min(first, i);
+                }
+            }
+        return first == spots_.size() ? nullptr : &spots_[first];
+    }
+
+  private:
+    [[nodiscard]] std::pair<int, int> cellOf(const Vector2d& pixel) const {
+        return {static_cast<int>(std::floor(pixel.x() / reach_px_)),
+                static_cast<int>(std::floor(pixel.y() / reach_px_))};
+    }
+
+    std::span<const LedDetection> spots_;
+    double reach_px_;
+    std::map<std::pair<int, int>, std::vector<std::size_t>> cells_;
+};
 
 /// From the first look to the further one; nothing where none was found by both.
 std::optional<Vector2d> motionSince(const ViewDetections& view, const ViewDetections& further) {
     std::vector<double> x;
     std::vector<double> y;
+    const PlaceOf found = placesIn(view.found);
     for (const LedDetection& now : further.found) {
-        if (const LedDetection* before = findIn(view.found, now.module)) {
-            x.push_back(now.pixel.x() - before->pixel.x());
-            y.push_back(now.pixel.y() - before->pixel.y());
+        if (const auto at = found.find(now.module); at != found.end()) {
+            const LedDetection& before = view.found[at->second];
+            x.push_back(now.pixel.x() - before.pixel.x());
+            y.push_back(now.pixel.y() - before.pixel.y());
         }
     }
     if (x.empty())
@@ -70,36 +111,35 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
     if (movedAtAll > options.maxMotion_px || (!isFirst && !shift))
         return false;
     const std::vector<LedDetection> before = view.found;
-    const auto undetected = [&](ModuleId module) {
-        return std::find_if(view.undetected.begin(), view.undetected.end(),
-                            [&](const Undetected& other) { return other.module == module; });
+    const Nearby spots(before, options.sameSpot_px);
+    PlaceOf places = placesIn(view.undetected);
+    const auto undetected = [&](ModuleId module) -> Undetected* {
+        const auto at = places.find(module);
+        return at == places.end() ? nullptr : &view.undetected[at->second];
     };
     for (std::size_t i = 0; i < further.found.size(); ++i) {
         LedDetection found = further.found[i];
-        const auto missing = undetected(found.module);
-        if (missing == view.undetected.end())
+        Undetected* missing = undetected(found.module);
+        if (missing == nullptr)
             continue;
         found.pixel -= shift.value_or(Vector2d::Zero());
         found.sigma_px = std::hypot(found.sigma_px, 0.5 * moved);
-        const auto there = std::find_if(before.begin(), before.end(), [&](const LedDetection& other) {
-            return (other.pixel - found.pixel).norm() < options.sameSpot_px;
-        });
-        if (there != before.end()) {
+        if (const LedDetection* there = spots.first(found.pixel)) {
             missing->verdict = DetectionVerdict::Ambiguous;
             missing->reason = Sentence::saying("its spot is where module {} was found", there->module.value);
             missing->cause = Undetected::Cause::Alike;
             missing->spots.clear();
             continue;
         }
-        view.undetected.erase(missing);
+        places.erase(found.module);
         view.found.push_back(found);
         if (i < further.readings.size())
             view.readings.push_back(further.readings[i]);
     }
     view.unexplained = further.unexplained;
     for (Undetected now : further.undetected) {
-        const auto missing = undetected(now.module);
-        if (missing == view.undetected.end() ||
+        Undetected* missing = undetected(now.module);
+        if (missing == nullptr ||
             (missing->cause != Undetected::Cause::OutOfSight && missing->cause != Undetected::Cause::CameraMoved))
             continue;
         for (SpotChoice& spot : now.spots) {
@@ -108,6 +148,7 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
         }
         *missing = std::move(now);
     }
+    std::erase_if(view.undetected, [&](const Undetected& one) { return !places.contains(one.module); });
     return true;
 }
 

@@ -132,7 +132,7 @@ TEST_F(Unplug, AtAnyMomentIsNoticedAndTheSameModulesComeBack) {
         EXPECT_TRUE(lightsTheRightOne(present[chance.index(present.size())])) << round;
         if (chance.uniform() < 0.5)
             device.light({{present.front(), std::nullopt}});
-        hasFailed = false;
+        hasFailed = !isReady;  // already: on a busy machine it may fall silent for as long as counts as unplugged
         QElapsedTimer timer;
         timer.start();
         terminal.close();

@@ -1,0 +1,9 @@
+from types import SimpleNamespace
+
+
+class SkinCellLedColor(SimpleNamespace):
+    pass
+
+
+class SkinCellDataArray(SimpleNamespace):
+    pass

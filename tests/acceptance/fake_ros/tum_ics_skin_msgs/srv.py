@@ -1,0 +1,1 @@
+getSkinCellIds = getSkinCellNeighbors = setSkinCellLedColor = None

@@ -74,6 +74,7 @@ SkinWorker::Time SkinWorker::now() {
 void SkinWorker::open(quint64 opening) {
     shut();
     opening_ = opening;
+    hasAnswered_ = false;
     restarts_ = 0;
     line_ = makeLine(address_);
     connect(line_.get(), &Line::opened, this, [this] {
@@ -130,8 +131,9 @@ void SkinWorker::forgetNumbers() {
 }
 
 void SkinWorker::lose(LineFault fault, const QString& detail) {
-    // Whatever ends a line that was open: systems have many words for a plug that was pulled.
-    const bool wasOpen = client_ != nullptr;
+    // Whatever ends a line that was open: systems have many words for a plug that was pulled. But a program that ends,
+    // or a gateway that hangs up, before it has said a word will do so again.
+    const bool wasOpen = client_ != nullptr && (hasAnswered_ || address_.kind == LineAddress::Kind::Serial);
     fail(lineHelp(fault, address_, detail));
     const bool isAgain = isReturning_;
     isReturning_ = isAgain || wasOpen;
@@ -243,6 +245,7 @@ void SkinWorker::flushStreams() {
 }
 
 void SkinWorker::onOpened(const std::string& firmware) {
+    hasAnswered_ = true;
     isReturning_ = false;
     emit opened(QString::fromStdString(firmware), opening_);
 }

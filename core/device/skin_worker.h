@@ -89,6 +89,7 @@ class SkinWorker : public QObject, private SkinListener {
     QTimer timer_;
     QTimer flush_;
     QTimer watch_;              ///< for a port that was lost
+    bool hasAnswered_ = false;  ///< since it was opened
     bool isReturning_ = false;  ///< it was lost, and has not answered since
     bool isExploreDue_ = false;
     int restarts_ = 0;  ///< times in a row that cells have restarted soon after they had before

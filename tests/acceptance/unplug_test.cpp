@@ -191,9 +191,3 @@ TEST_F(Unplug, WhatIsSilentAtFirstAfterItsReturnIsWaitedFor) {
 
 }  // namespace
 }  // namespace skincal
-
-int main(int argc, char** argv) {
-    testing::InitGoogleTest(&argc, argv);
-    const QCoreApplication application(argc, argv);
-    return RUN_ALL_TESTS();
-}

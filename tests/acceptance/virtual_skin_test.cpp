@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <QCoreApplication>
 #include <QDir>
 #include <QProcess>
 #include <QTemporaryDir>
@@ -222,9 +221,3 @@ TEST(VirtualSkinCommand, ARunGoesOnOnceAGatewayThatWasKilledIsThereAgain) {
 
 }  // namespace
 }  // namespace skincal::test
-
-int main(int argc, char** argv) {
-    testing::InitGoogleTest(&argc, argv);
-    const QCoreApplication application(argc, argv);
-    return RUN_ALL_TESTS();
-}

@@ -193,7 +193,9 @@ void PictureSeries::handle(const scan_run::Event& event) {
     const ScanRun before = state_;
     const auto [state, effects] = step(state_, event);
     state_ = state;
-    workbench_.noteCameraLag(state_.slowest);
+    // News alone: what is left of a scan says nothing of a camera that was chosen since.
+    if (state_.slowest > before.slowest)
+        workbench_.noteCameraLag(state_.slowest);
     if (state_.phase == ScanRun::Phase::Paused && !paused_)
         paused_ = now();
     else if (state_.isRunning() && paused_)

@@ -230,6 +230,16 @@ TEST(PictureSeries, TakesThreeSecondsForAThousandModules) {
     std::cout << "32 pictures of 1,000 modules in " << *took / 1ms << " ms of the camera's time\n";
 }
 
+TEST(PictureSeries, HowLateACameraIsSaysNothingOfAnother) {
+    TimedSeries timed("coded");
+    EXPECT_EQ(timed.desk.workbench.cameraLag(), 0us) << "nothing has told yet";
+    ASSERT_TRUE(timed.take(0));
+    EXPECT_GT(timed.desk.workbench.cameraLag(), 50ms);
+    timed.desk.workbench.chooseCamera(1);
+    timed.series->cancel();
+    EXPECT_EQ(timed.desk.workbench.cameraLag(), 0us);
+}
+
 TEST(PictureSeries, TakesMoreWithoutTimingLightAgain) {
     TimedSeries timed("coded");
     timed.isExtended = true;

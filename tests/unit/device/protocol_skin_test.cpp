@@ -5,6 +5,7 @@
 #include <QCoreApplication>
 #include <QDir>
 #include <QElapsedTimer>
+#include <QFile>
 #include <QPointer>
 #include <QSignalSpy>
 #include <QTcpServer>
@@ -264,6 +265,26 @@ TEST_F(AProtocolSkin, WhatIsStillSaidOfAnOpeningThatHasEndedDoesNotCount) {
         device.close();
     }
     EXPECT_FALSE(failure) << failure->toStdString();
+}
+
+TEST(AProgramsSkin, ThatNeverAnswersIsNotStartedAgainAndAgain) {
+    const QTemporaryDir folder;
+    const QString log = folder.filePath(QStringLiteral("starts"));
+    ProtocolSkin device(parseLineAddress(QStringLiteral("exec:sh -c 'echo started >> %1'").arg(log)).value(),
+                        allTemplates());
+    QObject::connect(&device, &SkinDevice::cameBack, &device, [&] { device.open(); });
+    std::optional<QString> why;
+    QObject::connect(&device, &SkinDevice::failed, &device, [&](const QString& words) { why = words; });
+    device.open();
+    ASSERT_TRUE(waitFor([&] { return why.has_value(); }));
+    EXPECT_TRUE(why->contains(QLatin1String("ended"))) << why->toStdString();
+    // One that had answered would be tried again by then.
+    QElapsedTimer time;
+    time.start();
+    ASSERT_TRUE(waitFor([&] { return time.elapsed() > 3500; }));
+    QFile starts(log);
+    ASSERT_TRUE(starts.open(QIODevice::ReadOnly));
+    EXPECT_EQ(starts.readAll().count("started"), 1);
 }
 
 TEST_F(AProtocolSkin, HangsOnAGatewayJustAsWell) {

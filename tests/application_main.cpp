@@ -1,3 +1,5 @@
+// Of tests that need an event loop and no screen.
+
 #include <gtest/gtest.h>
 
 #include <QCoreApplication>

@@ -49,6 +49,7 @@ void ProgramLine::close() {
         return;
     QProcess* process = process_.release();
     process->disconnect(this);
+    process->setParent(this);  // a thread that ends deletes nothing later
     if (process->state() == QProcess::NotRunning) {
         process->deleteLater();
         return;

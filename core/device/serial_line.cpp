@@ -120,6 +120,7 @@ void SerialLine::close() {
     if (port_->isOpen() && port_->bytesToWrite() > 0)
         port_->waitForBytesWritten(kLastWords);
     port_->close();
+    port_->setParent(this);  // a thread that ends deletes nothing later
     port_.release()->deleteLater();
 }
 

@@ -116,6 +116,7 @@ void SkinWorker::shut() {
     if (line_) {
         line_->disconnect(this);
         line_->close();
+        line_->setParent(this);  // a thread that ends deletes nothing later
         line_.release()->deleteLater();
     }
     streamsRest_ = false;

@@ -63,6 +63,7 @@ GuidedRun::GuidedRun(Workbench& workbench, GuidedRunOptions options)
           }),
       input_(fileno(stdin), QSocketNotifier::Read),
       patience_(this) {
+    scan_.setCode(options_.code);
     input_.setEnabled(false);
     patience_.setSingleShot(true);
     connect(&patience_, &QTimer::timeout, this, [this] {

@@ -15,6 +15,7 @@ namespace skincal {
 struct GuidedRunOptions {
     int poses = 8;
     int views = 4;
+    ScanCode code = ScanCode::Words;
     QString directory;                   ///< of the recording
     QString onPose;                      ///< shell command that turns the body; empty: a person does
     QString onView;                      ///< shell command that moves the camera; empty: a person does

@@ -178,6 +178,16 @@
     </message>
 </context>
 <context>
+    <name>skincal::ScanPresenter</name>
+    <message numerus="yes">
+        <source>One at a time that is %n pictures, more than fit into the memory: scan by words.</source>
+        <translation>
+            <numerusform>One at a time that is %n picture, more than fits into the memory: scan by words.</numerusform>
+            <numerusform>One at a time that is %n pictures, more than fit into the memory: scan by words.</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>skincal::ViewsPresenter</name>
     <message numerus="yes">
         <source>%n patches are not placed yet.</source>

@@ -165,6 +165,13 @@ void addRunCommand(CommandLine& line) {
     command->add_option("--views", arguments->options.views, "How many views; 0: none, and no camera")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
+    command
+        ->add_option("--code", arguments->options.code,
+                     "How a scan tells modules apart: by words that all blink at once, or one at a time, which takes "
+                     "two pictures per module")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, ScanCode>{{"words", ScanCode::Words}, {"one-at-a-time", ScanCode::OneAtATime}}))
+        ->default_str("words");
     command->add_option("--on-pose", arguments->onPose,
                         "Shell command that turns the body, run before each pose but the first");
     command->add_option("--on-view", arguments->onView,

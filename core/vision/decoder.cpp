@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "core/vision/colour_mixing.h"
 #include "core/vision/frame_pass.h"
 #include "core/vision/late_pictures.h"
 #include "core/vision/looks.h"
@@ -45,7 +46,8 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
                                  DetectionVerdict::NotFound,
                                  Sentence::saying("the camera moved while its word was shown"),
                                  {},
-                                 Undetected::Cause::CameraMoved});
+                                 Undetected::Cause::CameraMoved,
+                                 nearestSpot(scan, matches[spots.first->match], u)});
         } else if (spots.first != spots.second) {
             const std::vector<Sighting> distinct = distinctSpots({spots.first, spots.second}, options);
             if (distinct.size() == 1) {
@@ -54,7 +56,9 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
                 result.readings.push_back(readingOf(scan, matches[distinct[0].match], u));
                 continue;
             }
-            verdicts.replace(u, undecided(distinct, options));
+            Undetected several = undecided(distinct, options);
+            several.nearest = nearestSpot(scan, matches[distinct.front().match], u);
+            verdicts.replace(u, std::move(several));
         }
         result.undetected.push_back(verdicts.take(u, modules[u]));
     }
@@ -68,6 +72,13 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
     return result;
 }
 
+/// Pictures in which a channel is a colour.
+FrameLoader unmixing(const ColourMixing& mixing, const FrameLoader& load) {
+    return [&mixing, &load](std::size_t frame) {
+        return load(frame).map([&](const cv::Mat& picture) { return mixing.unmixed(picture); });
+    };
+}
+
 tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> modules, std::span<const FrameInfo> frames,
                                                    const FrameLoader& load, const DecoderOptions& options,
                                                    const RunContext& context) {
@@ -79,7 +90,15 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
     const Codebook& codebook = scan.codebook;
     const std::size_t perFrame = words->planesPerFrame();
 
-    FramePass pass(frames, load, words->coloured, context);
+    std::optional<ColourMixing> mixing;
+    if (words->coloured) {
+        auto measured = ColourMixing::measured(frames, load);
+        if (!measured)
+            return tl::unexpected(ScanError{Sentence::verbatim(std::move(measured.error())), false});
+        mixing = *std::move(measured);
+    }
+    const FrameLoader loadPure = mixing ? unmixing(*mixing, load) : load;
+    FramePass pass(frames, loadPure, words->coloured, context);
     SpotFinder finder(options.candidates);
     cv::Size size;
     auto done = pass.run(Sentence::saying("looking for spots"), 0, 0.4, [&](std::size_t, const FramePixels& frame) {
@@ -168,6 +187,10 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
     result.look = frames.empty() ? 0 : frames.front().look;
     for (WordReading& reading : result.readings)
         reading.look = result.look;
+    for (Undetected& undetected : result.undetected) {
+        if (undetected.nearest)
+            undetected.nearest->reading.look = result.look;
+    }
     context.report(Sentence::saying("measuring spots"), 1);
     return result;
 }

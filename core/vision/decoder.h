@@ -32,10 +32,11 @@ struct DecoderOptions {
 };
 
 /// Finds every module's LED in a view from frames with any lit sets: one at a time between backgrounds, patterns with
-/// or without complements, repeats, colours. Three passes over the frames: where does anything blink (SpotFinder); what
-/// does it blink (a series per candidate, WordMatcher); what does its light look like (per pixel the least-squares
-/// amplitude of the module's word, neighbours' light taken off, fitSpot). Memory grows with candidates times frames,
-/// never pictures times frames.
+/// or without complements, repeats, colours (which ColourMixing tells apart, where there is a picture of all LEDs in
+/// each of red, green and blue). Three passes over the frames: where does anything blink (SpotFinder); what does it
+/// blink (a series per candidate, WordMatcher); what does its light look like (per pixel the least-squares amplitude of
+/// the module's word, neighbours' light taken off, fitSpot). Memory grows with candidates times frames, never pictures
+/// times frames.
 ///
 /// Where modules were looked for again (FurtherLooks), each look is decoded by itself and adds to those before it
 /// (addLook).

@@ -7,6 +7,7 @@
 #include "core/geometry/ids.h"
 #include "core/geometry/se3.h"
 #include "core/geometry/sentence.h"
+#include "core/vision/word_reading.h"
 
 namespace skincal {
 
@@ -25,6 +26,12 @@ struct SpotChoice {
     Vector2d pixel = Vector2d::Zero();  ///< raw (distorted)
     double sigma_px = 0.1;              ///< per axis
     double strength = 1;                ///< its light over that of the brightest of them, 0 … 1
+};
+
+/// The spot that speaks most for a module that was not found.
+struct NearestSpot {
+    Vector2d pixel = Vector2d::Zero();  ///< raw (distorted)
+    WordReading reading{};
 };
 
 /// A module that the decoder did not accept, and why ("two spots blink its word", "no spot above the noise", …).
@@ -48,15 +55,7 @@ struct Undetected {
     /// which is the LED; what is known of the body may (see settleSpots). Empty where there is nothing to choose from.
     std::vector<SpotChoice> spots{};
     Cause cause = Cause::OutOfSight;
-};
-
-/// What made a spot the LED of a module: the word that it was sent, against what was seen.
-struct WordReading {
-    std::string sent;      ///< per picture (colours: per channel of it), '1' lit, '0' not
-    std::string received;  ///< the same from its brightness; '.' where something disturbed it
-    double snr = 0;        ///< its light in one picture over the noise of that
-    double margin = 0;     ///< lead over whatever else it could be, in -2 log likelihood
-    std::size_t look = 0;  ///< FrameInfo::look of the pictures that it was read in
+    std::optional<NearestSpot> nearest{};  ///< empty where nothing blinks like it
 };
 
 /// Everything the picture of one view yields.

@@ -129,6 +129,9 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
             missing->reason = Sentence::saying("its spot is where module {} was found", there->module.value);
             missing->cause = Undetected::Cause::Alike;
             missing->spots.clear();
+            missing->nearest.reset();
+            if (i < further.readings.size())
+                missing->nearest = NearestSpot{found.pixel, further.readings[i]};
             continue;
         }
         places.erase(found.module);
@@ -146,6 +149,8 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
             spot.pixel -= shift.value_or(Vector2d::Zero());
             spot.sigma_px = std::hypot(spot.sigma_px, 0.5 * moved);
         }
+        if (now.nearest)
+            now.nearest->pixel -= shift.value_or(Vector2d::Zero());
         *missing = std::move(now);
     }
     std::erase_if(view.undetected, [&](const Undetected& one) { return !places.contains(one.module); });

@@ -39,10 +39,11 @@ std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, st
         return std::nullopt;
     std::vector<MatchedSpot> matches;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        SeriesMatch& match = all[i];
+        MatchedSpot spot{candidates[i], i, std::move(all[i]), {}, {}};
+        const SeriesMatch& match = spot.series;
         switch (match.verdict) {
             case SeriesVerdict::Matched:
-                matches.push_back({candidates[i], i, std::move(match), {}, {}});
+                matches.push_back(std::move(spot));
                 break;
             case SeriesVerdict::Ambiguous:
                 verdicts.countUnexplained();
@@ -52,13 +53,15 @@ std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, st
                                   match.runnerUp
                                       ? Sentence::saying("a spot fits its word no better than that of module {}",
                                                          modules[*match.runnerUp].value)
-                                      : Sentence::saying("a spot blinks its word too faintly to be sure"));
+                                      : Sentence::saying("a spot blinks its word too faintly to be sure"),
+                                  nearestSpot(scan, spot, word));
                 }
                 break;
             case SeriesVerdict::Unlike:
                 verdicts.countUnexplained();
                 verdicts.note(match.words.front(), DetectionVerdict::NotFound, Undetected::Cause::NotAnLed,
-                              Sentence::saying("a spot blinks somewhat like its word, but with other light in it"));
+                              Sentence::saying("a spot blinks somewhat like its word, but with other light in it"),
+                              nearestSpot(scan, spot, match.words.front()));
                 break;
             case SeriesVerdict::Dark:
                 break;
@@ -95,19 +98,24 @@ bool hasMoreLight(const SpotScan& scan, const MatchedSpot& match) {
 WordReading readingOf(const SpotScan& scan, const MatchedSpot& match, std::size_t module) {
     const auto j = static_cast<std::size_t>(std::find(match.series.words.begin(), match.series.words.end(), module) -
                                             match.series.words.begin());
-    const std::size_t planes = scan.codebook.planes();
     WordReading reading;
-    reading.sent.assign(planes, '0');
-    for (const std::size_t plane : scan.codebook.lit[module])
-        reading.sent[plane] = '1';
+    reading.planes = scan.codebook.planes();
+    reading.coloured = scan.codebook.coloured;
+    reading.sent.assign(scan.codebook.lit[module].begin(), scan.codebook.lit[module].end());
     const Eigen::VectorXd light = lightOf(scan, match, j);
-    for (std::size_t k = 0; k < planes; ++k) {
-        const bool isBright = light[static_cast<Eigen::Index>(k)] > 0.5 * match.series.amplitudes[j];
-        reading.received += match.series.used[k] == 0 ? '.' : isBright ? '1' : '0';
+    for (std::size_t k = 0; k < reading.planes; ++k) {
+        if (match.series.used[k] == 0)
+            reading.disturbed.push_back(static_cast<std::uint32_t>(k));
+        else if (light[static_cast<Eigen::Index>(k)] > 0.5 * match.series.amplitudes[j])
+            reading.received.push_back(static_cast<std::uint32_t>(k));
     }
     reading.snr = match.series.amplitudes[j] / scan.sigma[match.candidate];
     reading.margin = match.series.margin;
     return reading;
+}
+
+NearestSpot nearestSpot(const SpotScan& scan, const MatchedSpot& match, std::size_t module) {
+    return {Vector2d(match.spot.x, match.spot.y), readingOf(scan, match, module)};
 }
 
 }  // namespace skincal

@@ -38,7 +38,8 @@ struct MatchedSpot {
 /// past may be brighter than the ground, but changes the surroundings (calmPlanes).
 [[nodiscard]] bool hasMoreLight(const SpotScan& scan, const MatchedSpot& match);
 
-/// @param module  one of those whose words match
+/// @param module  one of those whose words match, or nearly do
 [[nodiscard]] WordReading readingOf(const SpotScan& scan, const MatchedSpot& match, std::size_t module);
+[[nodiscard]] NearestSpot nearestSpot(const SpotScan& scan, const MatchedSpot& match, std::size_t module);
 
 }  // namespace skincal

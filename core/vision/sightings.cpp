@@ -57,7 +57,8 @@ Undetected::Cause causeOf(SpotFitError error) {
 }
 
 // One lens draws all LEDs alike, but for those that are nearer than it is focused on.
-void dropStrangeWidths(std::vector<Sighting>& sightings, Verdicts& verdicts) {
+void dropStrangeWidths(const SpotScan& scan, const std::vector<MatchedSpot>& matches, std::vector<Sighting>& sightings,
+                       Verdicts& verdicts) {
     constexpr std::size_t kFewest = 5;
     constexpr double kAlike = 1.6;
     constexpr double kSigmas = 3;
@@ -75,7 +76,8 @@ void dropStrangeWidths(std::vector<Sighting>& sightings, Verdicts& verdicts) {
                                                DetectionVerdict::NotFound,
                                                sentenceOf(SpotFitError::WrongShape),
                                                {},
-                                               Undetected::Cause::NotAnLed});
+                                               Undetected::Cause::NotAnLed,
+                                               nearestSpot(scan, matches[sighting.match], sighting.module)});
         return isStrange;
     });
 }
@@ -91,7 +93,8 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             const std::size_t module = match.series.words[j];
             const auto& fit = match.fits[j];
             if (!fit) {
-                verdicts.note(module, DetectionVerdict::NotFound, causeOf(fit.error()), sentenceOf(fit.error()));
+                verdicts.note(module, DetectionVerdict::NotFound, causeOf(fit.error()), sentenceOf(fit.error()),
+                              nearestSpot(scan, match, module));
                 continue;
             }
             // The skirt of a neighbour blinks the neighbour's word; its centre lies elsewhere. Where two LEDs share one
@@ -100,7 +103,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
             const double allowed = shared ? options.windowRadius - 1.0 : options.maxShift_px;
             if ((fit->centre - Vector2d(match.spot.x, match.spot.y)).norm() > allowed) {
                 verdicts.note(module, DetectionVerdict::NotFound, Undetected::Cause::NotAnLed,
-                              sentenceOf(SpotFitError::OutsideWindow));
+                              sentenceOf(SpotFitError::OutsideWindow), nearestSpot(scan, match, module));
                 continue;
             }
             // Clipping hides a second LED from the series, which then looks like a disturbance, and makes light no
@@ -109,13 +112,14 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
                        : fit->clipped && (hasMoreLight(scan, match) ||
                                           match.maps[j].strayShare(fit->centre, 3.5) > options.maxStrayShare)) {
                 verdicts.note(module, DetectionVerdict::Ambiguous, Undetected::Cause::TooBright,
-                              Sentence::saying("its spot is clipped and has other light in it"));
+                              Sentence::saying("its spot is clipped and has other light in it"),
+                              nearestSpot(scan, match, module));
                 continue;
             }
             sightings.push_back({module, *fit, whenSeen(scan.codebook, match.series, module), i});
         }
     }
-    dropStrangeWidths(sightings, verdicts);
+    dropStrangeWidths(scan, matches, sightings, verdicts);
     // Brightest first; ties by place, so that the result does not depend on anything else.
     std::sort(sightings.begin(), sightings.end(), [](const Sighting& a, const Sighting& b) {
         return std::make_tuple(a.module, -a.fit.flux(), a.fit.centre.x(), a.fit.centre.y()) <

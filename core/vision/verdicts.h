@@ -20,11 +20,12 @@ class Verdicts {
     explicit Verdicts(std::size_t modules) : reasons_(modules) {}
 
     /// The first reason stays, but what nearly was a find says more than what never was.
-    void note(std::size_t module, DetectionVerdict verdict, Undetected::Cause cause, Sentence reason) {
+    void note(std::size_t module, DetectionVerdict verdict, Undetected::Cause cause, Sentence reason,
+              std::optional<NearestSpot> nearest = std::nullopt) {
         auto& known = reasons_[module];
         const bool better = verdict == DetectionVerdict::Ambiguous && known.verdict == DetectionVerdict::NotFound;
         if (known.reason.empty() || better)
-            known = {{}, verdict, std::move(reason), {}, cause};
+            known = {{}, verdict, std::move(reason), {}, cause, std::move(nearest)};
     }
     /// Nothing says more than several finds.
     void replace(std::size_t module, Undetected with) { reasons_[module] = std::move(with); }

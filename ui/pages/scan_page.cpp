@@ -53,13 +53,15 @@ QString namesOf(const std::vector<ModuleId>& modules) {
 }  // namespace
 
 ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* parent)
-    : Page(tr("Scan"), tr("Every module blinks a word of its own. Hold camera and body still meanwhile."), parent),
+    : Page(tr("Scan"), tr("LEDs blink so that each can be told from the others. Hold camera and body still meanwhile."),
+           parent),
       workbench_(workbench),
       presenter_(presenter),
       picture_(new PictureView),
       views_(new QComboBox),
       start_(new QPushButton(tr("Scan this view"))),
       pause_(new QPushButton(tr("Pause"))),
+      code_(new QComboBox),
       again_(new QPushButton(tr("Scan again"))),
       dropView_(new QPushButton(tr("Drop view"))),
       progress_(new QProgressBar),
@@ -73,6 +75,17 @@ ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* pare
     pause_->setObjectName(QStringLiteral("pause"));
     top->addWidget(start_);
     top->addWidget(pause_);
+    code_->setObjectName(QStringLiteral("code"));
+    code_->setAccessibleName(tr("How modules are told apart"));
+    code_->addItem(tr("By words"), static_cast<int>(ScanCode::Words));
+    code_->addItem(tr("One at a time"), static_cast<int>(ScanCode::OneAtATime));
+    code_->setToolTip(
+        tr("By words: all LEDs blink at once, each its own word; a second or two for thousands of modules, and what "
+           "disturbs a picture is made up for.\nOne at a time: each LED alone between dark pictures; takes long, and "
+           "shows the pictures of every single LED."));
+    connect(code_, &QComboBox::currentIndexChanged, this,
+            [this] { presenter_.setCode(static_cast<ScanCode>(code_->currentData().toInt())); });
+    top->addWidget(code_);
     auto* looksAgain = new QCheckBox(tr("Look again"));
     looksAgain->setObjectName(QStringLiteral("looksAgain"));
     looksAgain->setChecked(presenter.looksAgain());
@@ -233,6 +246,7 @@ void ScanPage::refresh() {
     start_->setEnabled(isBusy || obstacle.isEmpty());
     pause_->setText(state.phase == Phase::Paused ? tr("Resume") : tr("Pause"));
     pause_->setEnabled(state.isRunning() || state.phase == Phase::Paused);
+    code_->setEnabled(!isBusy);
     pause_->setToolTip(tr("Stop between two pictures, and go on later"));
     progress_->setVisible(isBusy);
     progress_->setValue(static_cast<int>(100 * presenter_.done()));

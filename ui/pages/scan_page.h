@@ -34,6 +34,7 @@ class ScanPage : public Page {
     QComboBox* views_;
     QPushButton* start_;
     QPushButton* pause_;
+    QComboBox* code_;
     QPushButton* again_;
     QPushButton* dropView_;
     QProgressBar* progress_;

@@ -8,6 +8,7 @@
 #include "ui/pages/page.h"
 #include "ui/presenters/detection_model.h"
 #include "ui/presenters/spot_evidence.h"
+#include "ui/texts/word_lines.h"
 #include "ui/widgets/image_conversion.h"
 #include "ui/widgets/spot_crop.h"
 
@@ -18,25 +19,36 @@ constexpr int kSmallest = 64;  // on the screen
 constexpr int kLargest = 128;
 constexpr int kButtons = 96;
 
-/// Where to look: its spot; the brightest of several; or where the body has it.
+/// Where to look: its spot; the brightest of several; what came nearest to being it; or where the body has it.
 std::optional<Vector2d> placeOf(const ScannedView& view, const DetectionRow& detection, const OverlayModule* byBody) {
     if (detection.pixel)
         return detection.pixel;
+    std::optional<Vector2d> nearest;
     for (const Undetected& undetected : view.decoded.undetected) {
-        if (undetected.module == detection.module && !undetected.spots.empty())
+        if (undetected.module != detection.module)
+            continue;
+        if (!undetected.spots.empty())
             return undetected.spots.front().pixel;
+        if (undetected.nearest)
+            nearest = undetected.nearest->pixel;
     }
-    return byBody != nullptr ? std::optional(byBody->led) : std::nullopt;
+    return nearest || byBody == nullptr ? nearest : std::optional(byBody->led);
 }
 
-/// The word sent and the word received, as far as a line holds them.
 QString wordsBelowEachOther(const WordReading& reading) {
-    constexpr int kLongest = 64;
-    const QString sent = QString::fromStdString(reading.sent);
-    const QString received = QString::fromStdString(reading.received);
-    if (sent.size() > kLongest)
-        return {};
-    return QLatin1String("\n") + SpotCard::tr("sent %1\nseen %2").arg(sent, received);
+    constexpr int kInALine = 64;
+    QString text;
+    for (const WordLines& lines : linesOf(reading, kInALine))
+        text += QLatin1String("\n") + SpotCard::tr("sent %1\nseen %2").arg(lines.sent, lines.received);
+    return text;
+}
+
+QString strengthOf(const WordReading& reading) {
+    const QString light = SpotCard::tr("Light %1 times its noise").arg(reading.snr, 0, 'f', 0);
+    return reading.margin > 0 ? SpotCard::tr("%1; ahead of whatever else it could be by %2 (20 is enough)")
+                                    .arg(light)
+                                    .arg(reading.margin, 0, 'f', 0)
+                              : SpotCard::tr("%1; something else is as likely").arg(light);
 }
 
 QString placeWords(const OverlayModule& byBody) {
@@ -67,11 +79,7 @@ QString wordsOf(const DetectionRow& detection, const OverlayModule* byBody,
     if (!detection.pixel && byBody != nullptr)
         text += QLatin1String("\n") + placeWords(*byBody);
     if (detection.reading) {
-        text += QLatin1String("\n") +
-                SpotCard::tr("Light %1 times its noise; ahead of whatever else it could be by %2 (20 is enough)")
-                    .arg(detection.reading->snr, 0, 'f', 0)
-                    .arg(detection.reading->margin, 0, 'f', 0) +
-                wordsBelowEachOther(*detection.reading);
+        text += QLatin1String("\n") + strengthOf(*detection.reading) + wordsBelowEachOther(*detection.reading);
     }
     return text;
 }

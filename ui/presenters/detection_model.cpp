@@ -56,6 +56,8 @@ std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Skin
         row.module = undetected.module;
         row.state = stateOf(undetected);
         row.reason = said(undetected.reason);
+        if (undetected.nearest)
+            row.reading = undetected.nearest->reading;
         if (!undetected.spots.empty())
             several.insert(undetected.module);
     }

@@ -29,7 +29,7 @@ struct DetectionRow {
     std::optional<double> residual_px;  ///< length, against the newest body
     bool isOperatorsWord = false;
     QString reason;
-    std::optional<WordReading> reading;  ///< of what was found in pictures
+    std::optional<WordReading> reading;  ///< of its spot, or of what came nearest to being it, in pictures
 };
 
 /// All modules in a view: sortable by every column, numbers as numbers (Qt::UserRole).

@@ -56,7 +56,7 @@ void PictureSeries::start(LitSets lit) {
     began_ = now();
     paused_.reset();
     told_ = 0;
-    before_ = 0;
+    before_ = unpaced_ = 0;
     if (workbench_.skin() != nullptr)
         workbench_.skin()->prepare(lit_);
     handle(scan_run::Start{lit_.size(), toggles(), workbench_.cameraLag()});
@@ -73,7 +73,7 @@ void PictureSeries::extend(const LitSets& more) {
         workbench_.skin()->prepare(more);
     // Time and share are of this look alone, and decoding is no picture's.
     began_ = now();
-    before_ = state_.taken();
+    before_ = unpaced_ = state_.taken();
     handle(scan_run::Extend{more.size()});
 }
 
@@ -124,10 +124,11 @@ double PictureSeries::done() const {
 }
 
 std::optional<std::chrono::milliseconds> PictureSeries::timeLeft() const {
-    if (!state_.isRunning() || state_.taken() <= before_)
+    // Timing light is slow, and over soon.
+    if (!state_.isRunning() || state_.phase == ScanRun::Phase::Timing || state_.taken() <= unpaced_)
         return std::nullopt;
     const auto soFar = std::chrono::duration_cast<std::chrono::milliseconds>(now() - began_);
-    return soFar * static_cast<int>(state_.left.size()) / static_cast<int>(state_.taken() - before_);
+    return soFar * static_cast<int>(state_.left.size()) / static_cast<int>(state_.taken() - unpaced_);
 }
 
 ScanRun::Time PictureSeries::now() const {
@@ -200,6 +201,10 @@ void PictureSeries::handle(const scan_run::Event& event) {
         paused_ = now();
     else if (state_.isRunning() && paused_)
         began_ += now() - *std::exchange(paused_, std::nullopt);
+    if (before.phase == ScanRun::Phase::Timing && state_.phase > ScanRun::Phase::Timing) {
+        began_ = now();
+        unpaced_ = state_.taken();
+    }
     if (before.isRunning() != state_.isRunning())
         emit runningChanged(state_.isRunning());
     for (const scan_run::Effect& effect : effects)

@@ -87,9 +87,10 @@ class PictureSeries : public QObject {
     std::vector<FrameInfo> frames_;  ///< likewise
     std::size_t told_ = 0;           ///< by kept()
     std::size_t before_ = 0;         ///< frames of earlier looks
+    std::size_t unpaced_ = 0;        ///< frames that were taken before began_
     CameraFrame newest_;
     cv::Mat reference_;
-    ScanRun::Time began_{0};               ///< later by as long as it paused
+    ScanRun::Time began_{0};               ///< once light was timed, and later by as long as it paused
     std::optional<ScanRun::Time> paused_;  ///< since then
     QString words_;                        ///< of who failed last
 };

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "ui/presenters/spot_evidence.h"
+#include "ui/texts/sentences.h"
 
 namespace skincal {
 namespace {
@@ -49,6 +50,21 @@ ReportedScan scanOf(const ScannedView& view, const Decisions& decisions) {
         detection.isRejected = decided != decisions.detections.end() && decided->second.verdict == "rejected";
         scan.detections.push_back(std::move(detection));
     }
+    for (const Undetected& undetected : view.decoded.undetected) {
+        if (!undetected.nearest) {
+            scan.unseen.push_back(undetected.module);
+            continue;
+        }
+        const double sigma_px = undetected.spots.empty() ? 0 : undetected.spots.front().sigma_px;
+        scan.detections.push_back({undetected.module,
+                                   undetected.nearest->pixel,
+                                   sigma_px,
+                                   undetected.nearest->reading,
+                                   {},
+                                   false,
+                                   said(undetected.reason)});
+    }
+    std::sort(scan.unseen.begin(), scan.unseen.end());
     std::sort(scan.detections.begin(), scan.detections.end(),
               [](const ReportedDetection& a, const ReportedDetection& b) { return a.module < b.module; });
     return scan;

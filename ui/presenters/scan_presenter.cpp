@@ -12,8 +12,7 @@ ScanPresenter::ScanPresenter(Workbench& workbench, QObject* parent)
     connect(&workbench, &Workbench::cameraChosen, this, &ScanPresenter::attachCamera);
     connect(&workbench, &Workbench::skinReadyChanged, this, &ScanPresenter::stateChanged);
     connect(&workbench.session(), &Session::decisionsChanged, this, &ScanPresenter::stateChanged);
-    const auto countPictures = [this] { picturesOfAScan_ = codedScan(modules(), 0).size(); };
-    connect(&workbench.session(), &Session::skinChanged, this, countPictures);
+    connect(&workbench.session(), &Session::skinChanged, this, &ScanPresenter::countPictures);
     connect(&workbench.session(), &Session::opened, this, [this] {
         if (const auto& views = workbench_.session().measured().views; !views.empty())
             showView(views.back().name);  // what was opened is to be looked at
@@ -46,6 +45,11 @@ QString ScanPresenter::obstacle() const {
         return tr("No camera is chosen.");
     if (!workbench_.session().decisions().camera)
         return tr("The camera's intrinsics are not known.");
+    // They are all kept, 0.9 MB each at 1280 x 720.
+    constexpr std::size_t kMostPictures = 2000;
+    if (picturesOfAScan_ > kMostPictures)
+        return tr("One at a time that is %n pictures, more than fit into the memory: scan by words.", nullptr,
+                  static_cast<int>(picturesOfAScan_));
     if (isWaitingForPicture())
         return tr("The camera gives no pictures yet.");
     const CameraModel& camera = *workbench_.session().decisions().camera;
@@ -68,7 +72,7 @@ void ScanPresenter::start(const std::optional<std::string>& replaced) {
     // Words change from scan to scan: what two modules that look alike confuse in one view they don't in the next.
     const std::uint64_t seed = std::max<std::uint64_t>(scans_, workbench_.session().measured().views.size());
     scans_ = seed + 1;
-    LitSets lit = codedScan(modules(), seed);
+    LitSets lit = scanOf(code_, modules(), seed);
     firstLook_ = lit.size();
     further_.emplace(seed);
     result_.reset();
@@ -82,6 +86,16 @@ std::vector<ModuleId> ScanPresenter::modules() const {
     for (const SkinModule& module : workbench_.session().measured().skin.modules)
         modules.push_back(module.id);
     return modules;
+}
+
+void ScanPresenter::countPictures() {
+    picturesOfAScan_ = scanOf(code_, modules(), 0).size();
+}
+
+void ScanPresenter::setCode(ScanCode code) {
+    code_ = code;
+    countPictures();
+    emit stateChanged();
 }
 
 void ScanPresenter::showView(const std::string& view) {

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "core/vision/further_looks.h"
+#include "core/vision/scan_code.h"
 #include "ui/presenters/detection_model.h"
 #include "ui/presenters/picture_series.h"
 #include "ui/presenters/scan_job.h"
@@ -38,6 +39,9 @@ class ScanPresenter : public QObject {
     [[nodiscard]] const std::vector<ModuleId>& wanted() const;
     /// A scan that was broken off in a further look left the view that is shown.
     [[nodiscard]] bool isKept() const { return isKept_; }
+    /// How modules are told apart, from the next scan on.
+    [[nodiscard]] ScanCode code() const { return code_; }
+    void setCode(ScanCode code);
     /// Whether to look again, where the first look leaves modules undecided.
     [[nodiscard]] bool looksAgain() const { return looksAgain_; }
     void setLooksAgain(bool again) { looksAgain_ = again; }
@@ -53,7 +57,7 @@ class ScanPresenter : public QObject {
     /// By how much the camera has moved in the running scan; empty while it stands.
     [[nodiscard]] std::optional<double> movedSoFar_px() const { return watcher_.moved_px(); }
 
-    /// How many pictures a scan takes.
+    /// How many pictures a scan by code() takes.
     [[nodiscard]] std::size_t picturesOfAScan() const { return picturesOfAScan_; }
 
     /// The view whose detections are shown.
@@ -80,6 +84,7 @@ class ScanPresenter : public QObject {
   private:
     [[nodiscard]] bool isWaitingForPicture() const { return newest_.image.empty() || !isPictureNew_; }
     [[nodiscard]] std::vector<ModuleId> modules() const;
+    void countPictures();
     void attachCamera();
     void seriesChanged();
     void decode();
@@ -97,6 +102,7 @@ class ScanPresenter : public QObject {
     std::size_t firstLook_ = 0;  ///< pictures of it
     std::optional<FurtherLooks> further_;
     std::optional<ScanResult> result_;  ///< of all looks so far, should the next one be broken off
+    ScanCode code_ = ScanCode::Words;
     bool looksAgain_ = true;
     std::uint64_t scans_ = 0;  ///< that were begun
     bool isKept_ = false;

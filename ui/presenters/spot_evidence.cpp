@@ -71,12 +71,16 @@ cv::Mat padded(const cv::Mat& picture, const cv::Rect& inside, const cv::Rect& w
     return result;
 }
 
-/// The one that decided about a module: where it was found, or else the last in which it shone.
+/// The one that decided about a module: where it was found or nearly was, or else the last in which it shone.
 std::size_t lookFor(const ScannedView& view, ModuleId module) {
     const ViewDetections& decoded = view.decoded;
     for (std::size_t i = 0; i < std::min(decoded.found.size(), decoded.readings.size()); ++i) {
         if (decoded.found[i].module == module)
             return decoded.readings[i].look;
+    }
+    for (const Undetected& undetected : decoded.undetected) {
+        if (undetected.module == module && undetected.nearest)
+            return undetected.nearest->reading.look;
     }
     std::size_t look = decoded.look;
     for (const FrameInfo& frame : view.frames) {

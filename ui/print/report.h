@@ -11,7 +11,7 @@
 
 namespace skincal {
 
-/// A spot that was taken for a module's LED, and why.
+/// A spot that was taken for a module's LED, or came nearest to it, and why.
 struct ReportedDetection {
     ModuleId module;
     Vector2d pixel = Vector2d::Zero();  ///< raw (distorted)
@@ -19,12 +19,14 @@ struct ReportedDetection {
     std::optional<WordReading> reading{};  ///< where it was decoded from pictures
     QByteArray crops{};                    ///< PNG of the spot lit, dark and the difference; empty where there is none
     bool isRejected = false;               ///< by the operator
+    QString whyNot{};                      ///< what spoke against it; empty where it was taken
 };
 
 struct ReportedScan {
     std::string view;
     std::size_t pictures = 0;
     std::vector<ReportedDetection> detections;
+    std::vector<ModuleId> unseen{};  ///< nothing blinks like them
 };
 
 /// What a report says besides what the body itself knows.

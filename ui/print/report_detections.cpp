@@ -2,6 +2,7 @@
 
 #include "ui/print/html.h"
 #include "ui/texts/sentences.h"
+#include "ui/texts/word_lines.h"
 
 namespace skincal {
 namespace {
@@ -26,12 +27,29 @@ QString picture(const QByteArray& png) {
                : QStringLiteral("<img src=\"data:image/png;base64,%1\">").arg(QString::fromLatin1(png.toBase64()));
 }
 
-/// Where one LED was lit after the other, words are as long as there are modules, and say next to nothing.
 QString wordsOf(const WordReading& reading) {
-    constexpr std::size_t kLongest = 80;
-    return reading.sent.size() > kLongest
-               ? ReportText::tr("–")
-               : QStringLiteral("<code>%1<br>%2</code>").arg(escaped(reading.sent), escaped(reading.received));
+    constexpr int kInALine = 48;
+    QStringList lines;
+    for (const WordLines& part : linesOf(reading, kInALine))
+        lines << part.sent.toHtmlEscaped() << part.received.toHtmlEscaped();
+    return QStringLiteral("<code>%1</code>").arg(lines.join(QStringLiteral("<br>")));
+}
+
+/// Of a skin that a view sees a part of, most modules are these.
+QString unseenModules(const std::vector<ModuleId>& modules) {
+    if (modules.empty())
+        return {};
+    QStringList names;
+    for (std::size_t first = 0; first < modules.size();) {
+        std::size_t last = first;
+        while (last + 1 < modules.size() && modules[last + 1].value == modules[last].value + 1)
+            ++last;
+        names << (first == last ? QString::number(modules[first].value)
+                                : ReportText::tr("%1 to %2").arg(modules[first].value).arg(modules[last].value));
+        first = last + 1;
+    }
+    return QStringLiteral("<p>%1</p>\n")
+        .arg(ReportText::tr("Out of sight, nothing blinks like them: %1").arg(names.join(ReportText::tr(", "))));
 }
 
 QString detections(const ReportedScan& scan, const BodyModel& body) {
@@ -39,12 +57,14 @@ QString detections(const ReportedScan& scan, const BodyModel& body) {
     QString rows;
     for (const ReportedDetection& detection : scan.detections) {
         QString verdict = detection.isRejected ? ReportText::tr("rejected") : ReportText::tr("not used");
+        if (!detection.whyNot.isEmpty())
+            verdict = ReportText::tr("not found: %1").arg(detection.whyNot.toHtmlEscaped());
         QString residual = ReportText::tr("–");
         if (const auto found = observations.find(detection.module); found != observations.end()) {
             const BodyObservation& observation = *found->second;
             if (observation.verdict == ObservationVerdict::Used)
                 verdict = ReportText::tr("used");
-            else if (!detection.isRejected && !observation.reason.empty())
+            else if (!detection.isRejected && detection.whyNot.isEmpty() && !observation.reason.empty())
                 verdict = said(observation.reason).toHtmlEscaped();
             if (observation.residual)
                 residual = QString::number(observation.residual->norm(), 'f', 3);
@@ -52,7 +72,8 @@ QString detections(const ReportedScan& scan, const BodyModel& body) {
         QStringList cells{
             QString::number(detection.module.value),
             ReportText::tr("%1, %2").arg(detection.pixel.x(), 0, 'f', 2).arg(detection.pixel.y(), 0, 'f', 2),
-            QString::number(detection.sigma_px, 'f', 3), residual, verdict};
+            detection.sigma_px > 0 ? QString::number(detection.sigma_px, 'f', 3) : ReportText::tr("–"), residual,
+            verdict};
         if (const auto& reading = detection.reading) {
             cells << wordsOf(*reading) << QString::number(reading->snr, 'f', 1)
                   << QString::number(reading->margin, 'f', 0);
@@ -67,7 +88,8 @@ QString detections(const ReportedScan& scan, const BodyModel& body) {
            table({ReportText::tr("Module"), ReportText::tr("Pixel"), ReportText::tr("σ, px"),
                   ReportText::tr("Residual, px"), ReportText::tr("Verdict"), ReportText::tr("Word sent, received"),
                   ReportText::tr("SNR"), ReportText::tr("Lead"), ReportText::tr("Lit, dark, difference")},
-                 rows);
+                 rows) +
+           unseenModules(scan.unseen);
 }
 
 }  // namespace

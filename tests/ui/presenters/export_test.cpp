@@ -73,7 +73,7 @@ TEST_F(Exported, ReportsShowWhatDecided) {
     const std::string html = write(".html");
     for (const std::string& text :
          {std::string("a &lt;lamp&gt;"), desk_.workbench.skinOffers[0].name.toStdString(),
-          desk_.workbench.cameraOffers[0].name.toStdString(), view.decoded.readings.front().sent,
+          desk_.workbench.cameraOffers[0].name.toStdString(), view.decoded.readings.front().sentBits(),
           std::string("recording.json"), std::string("<td>rejected</td>")})
         EXPECT_THAT(html, HasSubstr(text));
     std::size_t crops = 0;
@@ -81,8 +81,11 @@ TEST_F(Exported, ReportsShowWhatDecided) {
          at = html.find("data:image/png", at + 1))
         ++crops;
     std::size_t detections = 0;
-    for (const ScannedView& one : desk_.session().measured().views)
+    for (const ScannedView& one : desk_.session().measured().views) {
         detections += one.decoded.found.size();
+        for (const Undetected& missing : one.decoded.undetected)
+            detections += missing.nearest ? 1 : 0;
+    }
     EXPECT_EQ(crops, detections);
     EXPECT_THAT(html, Not(HasSubstr("The data have changed since")));
     desk_.session().undoStack().undo();

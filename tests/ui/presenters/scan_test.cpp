@@ -167,6 +167,26 @@ TEST(ScanPresenter, LooksOnceWhereThatIsAskedOrNothingIsOpen) {
     EXPECT_LT(desk.session().measured().views.back().decoded.found.size(), visible) << "some are open";
 }
 
+TEST(ScanPresenter, LightsOneAtATimeWhereThatIsAsked) {
+    Desk desk;
+    ASSERT_TRUE(desk.connectSkin() && desk.startCamera());
+    const std::size_t modules = desk.session().measured().skin.modules.size();
+    const std::size_t byWords = desk.scan.picturesOfAScan();
+    desk.scan.setCode(ScanCode::OneAtATime);
+    EXPECT_EQ(desk.scan.picturesOfAScan(), 2 * modules + 3);
+    ASSERT_TRUE(desk.scanHere());
+    const ScannedView& view = desk.session().measured().views.back();
+    EXPECT_TRUE(desk.scan.state().isTimed) << "at the camera's rate";
+    ASSERT_EQ(view.frames.size(), 2 * modules + 3);
+    EXPECT_LE(std::count_if(view.frames.begin(), view.frames.end(),
+                            [](const FrameInfo& frame) { return frame.lit.size() > 1; }),
+              1);
+    expectSpotsNearTruth(desk, view);
+    desk.scan.setCode(ScanCode::Words);
+    ASSERT_TRUE(desk.scanHere());
+    EXPECT_EQ(desk.session().measured().views.back().frames.size(), byWords);
+}
+
 TEST(ScanPresenter, PausesAndGoesOn) {
     Desk desk;
     ASSERT_TRUE(desk.connectSkin() && desk.startCamera());

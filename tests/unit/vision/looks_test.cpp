@@ -69,9 +69,10 @@ TEST(Looks, AFurtherOneAddsWhatItFoundInThePixelsOfTheFirst) {
     // The camera has moved by 0.3 px; one anchor is off.
     further.found = {at(1, 100.3, 100), at(2, 207, 100), at(3, 300.3, 300), at(5, 150.3, 250)};
     further.readings.resize(4);
-    further.readings[3].sent = "0110";
+    further.readings[3].sent = {1, 2};
     further.undetected = {missing(4, Cause::TooWeak), missing(6)};
     further.undetected[0].reason = Sentence::verbatim("now");
+    further.undetected[0].nearest = NearestSpot{{40.3, 50}, {}};
     further.unexplained = 2;
     EXPECT_TRUE(addLook(view, further));
     sortAs(numbered(6), view);
@@ -80,11 +81,13 @@ TEST(Looks, AFurtherOneAddsWhatItFoundInThePixelsOfTheFirst) {
     EXPECT_EQ(view.found[3].module, ModuleId{5});
     EXPECT_LT((view.found[3].pixel - Vector2d(150, 250)).norm(), 1e-9);
     EXPECT_NEAR(view.found[3].sigma_px, std::hypot(0.03, 0.15), 1e-9);
-    EXPECT_EQ(view.readings[3].sent, "0110");
+    EXPECT_THAT(view.readings[3].sent, ElementsAre(1, 2));
     EXPECT_NEAR(view.moved_px.value(), 0.3, 1e-9);
     EXPECT_EQ(view.unexplained, 2U);
     ASSERT_EQ(view.undetected.size(), 2U);
     EXPECT_EQ(view.undetected[0].reason, "now");
+    ASSERT_TRUE(view.undetected[0].nearest);
+    EXPECT_LT((view.undetected[0].nearest->pixel - Vector2d(40, 50)).norm(), 1e-9);
     EXPECT_EQ(view.undetected[1].reason, "before");
 }
 

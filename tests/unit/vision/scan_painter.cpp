@@ -30,7 +30,11 @@ cv::Mat ScanPainter::paint(std::size_t k) const {
                 light.at<float>(y, x) = static_cast<float>(50 + 0.1 * x + 15 * std::sin(0.11 * x) * std::cos(0.07 * y));
         }
         for (const LitModule& lit : frames[k].lit) {
-            const double share = !lit.colour ? 1.0 : (*lit.colour)[2 - channel];
+            double share = 1;
+            if (lit.colour) {
+                const auto& [red, green, blue] = *lit.colour;
+                share = mixing.row(static_cast<Eigen::Index>(channel)).dot(Vector3d(blue, green, red));
+            }
             for (const auto* group : {&leds, &mirrored}) {
                 for (const PaintedLed& led : *group) {
                     if (led.module != lit.module || !(led.peak * share > 0))

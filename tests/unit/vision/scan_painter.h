@@ -31,6 +31,8 @@ struct ScanPainter {
     double readNoise = 1.4;
     double shotGain = 0.01;  ///< variance per grey level
     bool colour = false;
+    /// What channels see of colours, both blue, green, red.
+    Eigen::Matrix3d mixing = Eigen::Matrix3d::Identity();
     /// Adds light of its own to frame k (CV_32F, one channel).
     std::function<void(cv::Mat& light, std::size_t k)> disturb{};
 

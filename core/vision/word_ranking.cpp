@@ -1,32 +1,61 @@
 #include "core/vision/word_ranking.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
 #include <span>
+#include <tuple>
 
 namespace skincal {
 namespace {
 
-constexpr std::size_t kGroup = 8;
-constexpr std::size_t kGroups = 8;
-constexpr std::size_t kBlock = kGroup * kGroups;  // planes of which one number tells where a word is lit
-constexpr std::size_t kAtOnce = 64;
-constexpr std::size_t kSums = std::size_t{1} << kGroup;
+constexpr std::size_t kMostInGroup = 10;  // of which a table of all sums still fits into the nearest cache
+constexpr std::size_t kFewestInGroup = 4;
 
-using Sums = std::array<std::array<float, kSums>, kGroups>;
-
-// The inner loop of decoding: unrolled, for which compilers must know its length.
-template <std::size_t groups>
-void addSums(const Sums& sums, std::span<const std::uint64_t> masks, std::vector<float>& products) {
-    for (std::size_t i = 0; i < masks.size(); ++i) {
-        float sum = products[i];
-        for (std::size_t group = 0; group < groups; ++group)
-            sum += sums[group][masks[i] >> (kGroup * group) & (kSums - 1)];
-        products[i] = sum;
+/// Sums of all subsets of some values.
+void fillSums(std::span<const float> values, float* sums) {
+    sums[0] = 0;
+    for (std::size_t bit = 0; bit < values.size(); ++bit) {
+        const std::size_t half = std::size_t{1} << bit;
+        for (std::size_t subset = 0; subset < half; ++subset)
+            sums[half + subset] = sums[subset] + values[bit];
     }
 }
 
 }  // namespace
+
+/// The best few so far.
+class WordRanking::Shortlist {
+  public:
+    Shortlist(const WordRanking& ranking, std::size_t most) : ranking_(ranking), most_(most) {}
+
+    /// What w . y must be more than.
+    [[nodiscard]] float least() const { return least_; }
+    void offer(float product, std::size_t i) {
+        if (!(product > least_))
+            return;
+        const RankedWord ranked{static_cast<double>(product * product * ranking_.inverseEnergy_[i]),
+                                ranking_.words_[i]};
+        const auto before = [](const RankedWord& a, const RankedWord& b) {
+            return std::tuple(-a.score, a.word) < std::tuple(-b.score, b.word);
+        };
+        best_.insert(std::upper_bound(best_.begin(), best_.end(), ranked, before), ranked);
+        if (best_.size() > most_)
+            best_.pop_back();
+        if (best_.size() == most_)
+            least_ = kRounding * std::sqrt(static_cast<float>(best_.back().score) / ranking_.mostInverseEnergy_);
+    }
+    [[nodiscard]] std::vector<RankedWord> take() { return std::move(best_); }
+
+  private:
+    static constexpr float kRounding = 1 - 1e-5F;
+
+    const WordRanking& ranking_;
+    std::size_t most_;
+    float least_ = 0;
+    std::vector<RankedWord> best_;
+};
 
 WordRanking::WordRanking(const Codebook& codebook) : codebook_(codebook) {
     std::size_t lit = 0;
@@ -34,87 +63,119 @@ WordRanking::WordRanking(const Codebook& codebook) : codebook_(codebook) {
         if (codebook.representative[u] != u || !codebook.blinks(u))
             continue;
         words_.push_back(static_cast<std::uint32_t>(u));
-        inverseEnergy_.push_back(static_cast<float>(1 / codebook.energy[u]));
         lit += codebook.lit[u].size();
     }
-    const std::size_t groups = (codebook.planes() + kGroup - 1) / kGroup;
-    if (lit <= groups * words_.size())
-        return;
-    masks_.assign((codebook.planes() + kBlock - 1) / kBlock * words_.size(), 0);
+    constexpr std::size_t kSparse = 8;  // planes for each one in which a word is lit
+    if (kSparse * lit > codebook.planes() * words_.size()) {
+        groupBits();
+        sortByFirstGroup();
+    }
+    for (const std::uint32_t u : words_)
+        inverseEnergy_.push_back(static_cast<float>(1 / codebook.energy[u]));
+    if (!words_.empty())
+        mostInverseEnergy_ = *std::max_element(inverseEnergy_.begin(), inverseEnergy_.end());
+}
+
+void WordRanking::groupBits() {
+    bits_ = wordBits(codebook_, words_);
+    // Where words are few, a large table costs more than it spares.
+    const std::size_t most =
+        std::clamp(static_cast<std::size_t>(std::bit_width(words_.size())), kFewestInGroup, kMostInGroup);
+    // A single word has no bits that tell it from others.
+    const std::size_t groups = std::max<std::size_t>(1, (bits_.count + most - 1) / most);
+    for (std::size_t g = 0; g < groups; ++g) {
+        Group group{g * bits_.count / groups, 0, std::vector<std::uint16_t>(words_.size(), 0)};
+        group.count = (g + 1) * bits_.count / groups - group.first;
+        for (std::size_t bit = 0; bit < group.count; ++bit) {
+            for (std::size_t i = 0; i < words_.size(); ++i) {
+                if (bits_.set[group.first + bit][i])
+                    group.values[i] = static_cast<std::uint16_t>(group.values[i] | 1U << bit);
+            }
+        }
+        groups_.push_back(std::move(group));
+    }
+    bits_.set.clear();
+}
+
+void WordRanking::sortByFirstGroup() {
+    const std::vector<std::uint16_t> first = groups_.front().values;
+    std::vector<std::size_t> order(words_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return first[a] < first[b]; });
+    const auto sort = [&](auto& list) {
+        const auto before = list;
+        for (std::size_t i = 0; i < order.size(); ++i)
+            list[i] = before[order[i]];
+    };
+    sort(words_);
+    for (Group& group : groups_)
+        sort(group.values);
+    const std::size_t values = std::size_t{1} << groups_.front().count;
+    begin_.assign(values + 1, 0);
+    for (const std::uint16_t value : first)
+        ++begin_[value + std::size_t{1}];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    near_.resize(values);
+    std::iota(near_.begin(), near_.end(), std::uint16_t{0});
+    std::stable_sort(near_.begin(), near_.end(),
+                     [](std::uint16_t a, std::uint16_t b) { return std::popcount(a) < std::popcount(b); });
+}
+
+void WordRanking::rankSparse(const Eigen::VectorXd& y, Shortlist& shortlist) const {
     for (std::size_t i = 0; i < words_.size(); ++i) {
-        for (const std::size_t plane : codebook.lit[words_[i]])
-            masks_[plane / kBlock * words_.size() + i] |= std::uint64_t{1} << (plane % kBlock);
+        float product = 0;
+        for (const std::size_t plane : codebook_.lit[words_[i]])
+            product += static_cast<float>(y[static_cast<Eigen::Index>(plane)]);
+        shortlist.offer(product, i);
     }
 }
 
-void WordRanking::addBlock(const Eigen::VectorXd& y, std::size_t block, std::vector<float>& products) const {
-    const std::size_t planes = std::min(kBlock, codebook_.planes() - block * kBlock);
-    const std::size_t groups = (planes + kGroup - 1) / kGroup;
-    Sums sums{};
-    for (std::size_t bit = 0; bit < kGroup * groups; ++bit) {
-        auto& table = sums[bit / kGroup];
-        const float here = bit < planes ? static_cast<float>(y[static_cast<Eigen::Index>(block * kBlock + bit)]) : 0.0F;
-        const std::size_t half = std::size_t{1} << (bit % kGroup);
-        for (std::size_t mask = 0; mask < half; ++mask)
-            table[half + mask] = table[mask] + here;
+void WordRanking::rankDense(const Eigen::VectorXd& y, Shortlist& shortlist) const {
+    float all = 0;
+    std::vector<float> values(bits_.count, 0.0F);
+    for (std::size_t k = 0; k < bits_.planes.size(); ++k) {
+        const auto [bit, isOpposite] = bits_.planes[k];
+        const auto here = static_cast<float>(y[static_cast<Eigen::Index>(k)]);
+        if (isOpposite)
+            all += here;
+        if (bit != WordBits::kNone)
+            values[bit] += isOpposite ? -here : here;
     }
-    const std::span masks(masks_.data() + block * words_.size(), words_.size());
-    switch (groups) {
-        case 1:
-            return addSums<1>(sums, masks, products);
-        case 2:
-            return addSums<2>(sums, masks, products);
-        case 3:
-            return addSums<3>(sums, masks, products);
-        case 4:
-            return addSums<4>(sums, masks, products);
-        case 5:
-            return addSums<5>(sums, masks, products);
-        case 6:
-            return addSums<6>(sums, masks, products);
-        case 7:
-            return addSums<7>(sums, masks, products);
-        default:
-            return addSums<kGroups>(sums, masks, products);
+    constexpr std::size_t kTable = std::size_t{1} << kMostInGroup;
+    std::vector<float> sums(kTable * groups_.size());
+    float others = all;
+    std::size_t hard = 0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const std::span here = std::span(values).subspan(groups_[g].first, groups_[g].count);
+        fillSums(here, sums.data() + g * kTable);
+        for (std::size_t bit = 0; bit < here.size(); ++bit) {
+            if (g == 0)
+                hard |= (here[bit] > 0 ? std::size_t{1} : 0) << bit;
+            else
+                others += std::max(here[bit], 0.0F);
+        }
+    }
+    // From the first bits that the series shows itself on: what comes soon raises the bar for all others.
+    for (const std::uint16_t away : near_) {
+        const std::size_t value = hard ^ away;
+        if (sums[value] + others <= shortlist.least())
+            continue;
+        for (std::size_t i = begin_[value]; i < begin_[value + 1]; ++i) {
+            float product = all + sums[value];
+            for (std::size_t g = 1; g < groups_.size(); ++g)
+                product += sums[g * kTable + groups_[g].values[i]];
+            shortlist.offer(product, i);
+        }
     }
 }
 
 std::vector<RankedWord> WordRanking::best(const Eigen::VectorXd& y, std::size_t most) const {
-    std::vector<float> products(words_.size(), 0.0F);
-    if (masks_.empty()) {
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            for (const std::size_t plane : codebook_.lit[words_[i]])
-                products[i] += static_cast<float>(y[static_cast<Eigen::Index>(plane)]);
-        }
-    } else {
-        for (std::size_t block = 0; block * kBlock < codebook_.planes(); ++block)
-            addBlock(y, block, products);
-    }
-    std::vector<RankedWord> best;
-    if (most == 0)
-        return best;
-    // Nearly all words are far from the best few: whole groups are passed over.
-    float least = 0;
-    for (std::size_t first = 0; first < products.size(); first += kAtOnce) {
-        const std::size_t count = std::min(products.size() - first, kAtOnce);
-        const auto size = static_cast<Eigen::Index>(count);
-        Eigen::Map<Eigen::ArrayXf> scores(products.data() + first, size);
-        scores = scores.max(0.0F).square() * Eigen::Map<const Eigen::ArrayXf>(inverseEnergy_.data() + first, size);
-        if (!(scores.maxCoeff() > least))
-            continue;
-        for (std::size_t i = first; i < first + count; ++i) {
-            if (!(products[i] > least))
-                continue;
-            if (best.size() == most)
-                best.pop_back();
-            const RankedWord ranked{static_cast<double>(products[i]), words_[i]};
-            best.insert(std::upper_bound(best.begin(), best.end(), ranked,
-                                         [](const RankedWord& a, const RankedWord& b) { return a.score > b.score; }),
-                        ranked);
-            least = best.size() == most ? static_cast<float>(best.back().score) : 0.0F;
-        }
-    }
-    return best;
+    Shortlist shortlist(*this, most);
+    if (most > 0 && !groups_.empty())
+        rankDense(y, shortlist);
+    else if (most > 0)
+        rankSparse(y, shortlist);
+    return shortlist.take();
 }
 
 }  // namespace skincal

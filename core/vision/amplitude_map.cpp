@@ -61,86 +61,123 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
     weights_ = weights.row(0).cast<float>();
     for (const std::size_t plane : codebook.lit[filter_.words.front()])
         lit_[plane] = 1;
-    const Image zero = Image::Zero(rect_.width, rect_.height);
-    value_ = zero;
-    variance_ = zero;
+    const Eigen::Index pixels = rect_.area();
+    Eigen::Index columns = kNoise;
     if (filter_.clipped) {
-        clippedLit_ = zero;
-        clippedDark_ = zero;
         calm_ = calmPlanes(filter_.around, filter_.gains, filter_.used);
         space_ = explainedSpace(codebook, filter_.words, calm_, ambient).cast<float>();
-        squares_ = zero;
-        noise_ = zero;
-        moments_.assign(static_cast<std::size_t>(space_.cols()), zero);
+        columns = kExplained + space_.cols();
+        squares_ = Eigen::ArrayXf::Zero(pixels);
+        clippedLit_ = squares_;
+        clippedDark_ = squares_;
+    }
+    sums_ = Eigen::MatrixXf::Zero(pixels, columns);
+}
+
+void AmplitudeMap::add(std::span<const FramePlane> planes, const ImageNoise& noise) {
+    read_ = static_cast<float>(noise.read);
+    shot_ = static_cast<float>(noise.gain);
+    std::vector<const FramePlane*> used;
+    for (const FramePlane& one : planes) {
+        if (filter_.used[one.plane] == 0)
+            continue;
+        used.push_back(&one);
+        const auto gain = static_cast<float>(filter_.gains[one.plane]);
+        const auto at = static_cast<Eigen::Index>(one.plane);
+        const float around = filter_.around[at];
+        const float weight = weights_[at] / gain;
+        squaredWeights_ += weight * weight;
+        varianceOffset_ += weight * weight * around;
+        if (isCalm(one.plane)) {
+            const auto common = static_cast<float>(surroundingsVariance(noise, static_cast<double>(around), radius_));
+            noiseOffset_ += (read_ + common + shot_ * around) / (gain * gain);
+        }
+    }
+    if (used.empty())
+        return;
+    const Eigen::MatrixXf light = lightIn(used);
+    sums_.noalias() += light * factorsOf(used);
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (isCalm(used[i]->plane))
+            squares_ += light.col(static_cast<Eigen::Index>(i)).array().square();
     }
 }
 
-void AmplitudeMap::add(const FramePixels& frame, std::size_t plane, int channel, const ImageNoise& noise) {
-    if (filter_.used[plane] == 0)
-        return;
-    const auto at = static_cast<Eigen::Index>(plane);
-    const auto gain = static_cast<float>(filter_.gains[plane]);
-    const float weight = weights_[at] / gain;
-    const float around = filter_.around[at];
-    read_ = static_cast<float>(noise.read);
-    shot_ = static_cast<float>(noise.gain);
-    offset_ += weight * around;
-    squaredWeights_ += weight * weight;
-    const bool isCalm = filter_.clipped && calm_[plane] != 0;
-    if (isCalm) {
-        const auto common = static_cast<float>(surroundingsVariance(noise, static_cast<double>(around), radius_));
-        noiseOffset_ += (read_ + common) / (gain * gain);
+Eigen::MatrixXf AmplitudeMap::lightIn(std::span<const FramePlane* const> planes) {
+    Eigen::MatrixXf light(sums_.rows(), static_cast<Eigen::Index>(planes.size()));
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        const FramePlane& plane = *planes[i];
+        auto here = light.col(static_cast<Eigen::Index>(i)).array();
+        for (int y = 0; y < rect_.height; ++y)
+            plane.frame.values(rect_.x, rect_.y + y, rect_.width, plane.channel,
+                               here.data() + static_cast<std::ptrdiff_t>(y) * rect_.width);
+        if (filter_.clipped)
+            noteClipped(plane, here);
+        here = (here - filter_.around[static_cast<Eigen::Index>(plane.plane)]) *
+               static_cast<float>(1 / filter_.gains[plane.plane]);
     }
-    Image& clipped = lit_[plane] != 0 ? clippedLit_ : clippedDark_;
-    // Every pixel of some ten thousand windows in every plane: written so that compilers make vectors of it.
-    constexpr int kWidest = 61;
-    Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, 0, kWidest, kWidest> light(value_.rows(), value_.cols());
-    for (Eigen::Index y = 0; y < light.cols(); ++y)
-        frame.values(rect_.x, rect_.y + static_cast<int>(y), rect_.width, channel, light.col(y).data());
-    value_ += weight * light;
-    variance_ += weight * weight * light;
-    if (!filter_.clipped)
+    return light;
+}
+
+Eigen::MatrixXf AmplitudeMap::factorsOf(std::span<const FramePlane* const> planes) const {
+    Eigen::MatrixXf factors(static_cast<Eigen::Index>(planes.size()), sums_.cols());
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(planes[i]->plane);
+        const auto gain = static_cast<float>(filter_.gains[planes[i]->plane]);
+        auto row = factors.row(static_cast<Eigen::Index>(i));
+        row[kValue] = weights_[at];
+        row[kVariance] = weights_[at] * weights_[at] / gain;
+        if (!filter_.clipped)
+            continue;
+        row[kNoise] = isCalm(planes[i]->plane) ? 1 / gain : 0.0F;
+        row.tail(space_.cols()) = space_.row(at);  // zero where it is not calm
+    }
+    return factors;
+}
+
+void AmplitudeMap::noteClipped(const FramePlane& plane, const Eigen::Ref<const Eigen::ArrayXf>& values) {
+    const float highest = values.maxCoeff();
+    Eigen::ArrayXf& clipped = lit_[plane.plane] != 0 ? clippedLit_ : clippedDark_;
+    if (!plane.frame.isMean(plane.channel)) {
+        if (highest >= FramePixels::kTop)
+            clipped += (values >= FramePixels::kTop).cast<float>();
         return;
+    }
     // Of three channels one may be clipped where their mean is dark.
-    constexpr float kMayBeClipped = 254.0F / 3;
-    if (light.maxCoeff() >= kMayBeClipped) {
-        for (Eigen::Index y = 0; y < light.cols(); ++y) {
-            for (Eigen::Index x = 0; x < light.rows(); ++x)
-                clipped(x, y) += frame.saturated(rect_.x + static_cast<int>(x), rect_.y + static_cast<int>(y), channel)
-                                     ? 1.0F
-                                     : 0.0F;
-        }
-    }
-    if (!isCalm)
+    if (highest < FramePixels::kTop / 3)
         return;
-    noise_ += light / (gain * gain);
-    light = (light - around) / gain;
-    squares_ += light.square();
-    for (std::size_t j = 0; j < moments_.size(); ++j)
-        moments_[j] += space_(at, static_cast<Eigen::Index>(j)) * light;
+    Eigen::Index i = 0;
+    for (int y = rect_.y; y < rect_.y + rect_.height; ++y) {
+        for (int x = rect_.x; x < rect_.x + rect_.width; ++x)
+            clipped[i++] += plane.frame.saturated(x, y, plane.channel) ? 1.0F : 0.0F;
+    }
 }
 
 SpotWindow AmplitudeMap::window() const {
+    using Image = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const auto imageOf = [&](Column column) {
+        return Eigen::Map<const Image>(sums_.col(column).data(), rect_.height, rect_.width);
+    };
     SpotWindow window;
     window.x0 = rect_.x;
     window.y0 = rect_.y;
-    window.value = (value_.transpose() - offset_).cast<double>();
-    window.variance = (read_ * squaredWeights_ + shot_ * variance_.transpose()).cast<double>();
-    window.state.setConstant(value_.cols(), value_.rows(), PixelState::Good);
+    window.value = imageOf(kValue).cast<double>();
+    window.variance = (read_ * squaredWeights_ + shot_ * (varianceOffset_ + imageOf(kVariance))).cast<double>();
+    window.state.setConstant(rect_.height, rect_.width, PixelState::Good);
     if (!filter_.clipped)
         return window;
     float litPlanes = 0;
     for (std::size_t k = 0; k < lit_.size(); ++k)
         litPlanes += lit_[k] != 0 && filter_.used[k] != 0 ? 1.0F : 0.0F;
     const bool alone = filter_.words.size() == 1;
-    for (Eigen::Index y = 0; y < value_.cols(); ++y) {
-        for (Eigen::Index x = 0; x < value_.rows(); ++x) {
-            if (clippedDark_(x, y) > 0)
+    Eigen::Index i = 0;
+    for (Eigen::Index y = 0; y < rect_.height; ++y) {
+        for (Eigen::Index x = 0; x < rect_.width; ++x, ++i) {
+            if (clippedDark_[i] > 0)
                 window.state(y, x) = PixelState::Excluded;
-            else if (clippedLit_(x, y) > 0)
-                window.state(y, x) = alone || (!filter_.shared && clippedLit_(x, y) == litPlanes)
-                                         ? PixelState::Saturated
-                                         : PixelState::Excluded;
+            else if (clippedLit_[i] > 0)
+                window.state(y, x) = alone || (!filter_.shared && clippedLit_[i] == litPlanes) ? PixelState::Saturated
+                                                                                               : PixelState::Excluded;
         }
     }
     return window;
@@ -154,19 +191,17 @@ double AmplitudeMap::strayShare(const Vector2d& centre, double radius_px) const 
     double light = 0;
     double stray = 0;
     double squaredNoise = 0;
-    for (Eigen::Index y = 0; y < squares_.cols(); ++y) {
-        for (Eigen::Index x = 0; x < squares_.rows(); ++x) {
-            const Vector2d pixel(static_cast<double>(rect_.x + x), static_cast<double>(rect_.y + y));
-            if (clippedLit_(x, y) + clippedDark_(x, y) > 0 || (pixel - centre).norm() > radius_px)
-                continue;
-            const auto value = static_cast<double>(value_(x, y) - offset_);
-            light += energy * value * value;
-            const double noise = static_cast<double>(noiseOffset_ + shot_ * noise_(x, y)) / planes;
-            stray += static_cast<double>(squares_(x, y)) - noise * freedom;
-            squaredNoise += noise * noise;
-            for (const Image& moment : moments_)
-                stray -= static_cast<double>(moment(x, y) * moment(x, y));
-        }
+    for (Eigen::Index i = 0; i < squares_.size(); ++i) {
+        const Vector2d pixel(static_cast<double>(rect_.x + i % rect_.width),
+                             static_cast<double>(rect_.y + i / rect_.width));
+        if (clippedLit_[i] + clippedDark_[i] > 0 || (pixel - centre).norm() > radius_px)
+            continue;
+        const auto value = static_cast<double>(sums_(i, kValue));
+        light += energy * value * value;
+        const double noise = static_cast<double>(noiseOffset_ + shot_ * sums_(i, kNoise)) / planes;
+        stray += static_cast<double>(squares_[i]) - noise * freedom -
+                 static_cast<double>(sums_.row(i).tail(space_.cols()).squaredNorm());
+        squaredNoise += noise * noise;
     }
     // A word of one plane in a hundred has little light, and a hundred planes have much noise.
     constexpr double kSigmas = 3;

@@ -27,6 +27,13 @@ struct LightFilter {
     bool clipped = false;             ///< whether any pixel may be: to look costs as much as all the rest
 };
 
+/// One of a view's planes with its picture.
+struct FramePlane {
+    std::size_t plane = 0;
+    int channel = -1;
+    FramePixels frame;
+};
+
 /// Collects, pixel by pixel in a window, the amplitude of one module's word, its variance, and what light there is that
 /// the words do not explain; each frame less the level of the surroundings and over its exposure.
 class AmplitudeMap {
@@ -37,7 +44,8 @@ class AmplitudeMap {
     /// with other LEDs near but none in the spot, in every one in which it shines; else nothing is known of it.
     AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size picture, const Codebook& codebook, LightFilter filter);
 
-    void add(const FramePixels& frame, std::size_t plane, int channel, const ImageNoise& noise);
+    /// Some planes, of which each is added once; several at a time take much less than one by one.
+    void add(std::span<const FramePlane> planes, const ImageNoise& noise);
     /// After the last plane.
     [[nodiscard]] SpotWindow window() const;
     /// Energy of unexplained light over that of the word, noise and what that may chance to be taken off, in the pixels
@@ -46,7 +54,21 @@ class AmplitudeMap {
     [[nodiscard]] double strayShare(const Vector2d& centre, double radius_px) const;
 
   private:
-    using Image = Eigen::ArrayXXf;  ///< a column per row of the picture, whose pixels lie side by side
+    /// Columns of sums_.
+    enum Column : std::uint8_t {
+        kValue,     ///< the amplitude
+        kVariance,  ///< of it, per variance of a pixel
+        kNoise,     ///< of the calm planes, per variance of a pixel; this and the following only where it is clipped
+        kExplained  ///< from here on one per column of space_
+    };
+
+    /// The window's light above its surroundings: a row per pixel, row by row of the picture, and a column per plane.
+    [[nodiscard]] Eigen::MatrixXf lightIn(std::span<const FramePlane* const> planes);
+    /// What a pixel's light counts in each of the sums: a row per plane.
+    [[nodiscard]] Eigen::MatrixXf factorsOf(std::span<const FramePlane* const> planes) const;
+    /// @param values  of the window's pixels in the plane
+    void noteClipped(const FramePlane& plane, const Eigen::Ref<const Eigen::ArrayXf>& values);
+    [[nodiscard]] bool isCalm(std::size_t plane) const { return filter_.clipped && calm_[plane] != 0; }
 
     cv::Rect rect_;
     int radius_;
@@ -58,19 +80,16 @@ class AmplitudeMap {
     // Sums over the planes of what pixels have in common …
     float read_ = 0;
     float shot_ = 0;
-    float offset_ = 0;
     float squaredWeights_ = 0;
+    float varianceOffset_ = 0;
     float noiseOffset_ = 0;
-    // … and per pixel: of values times weights, and times squared weights.
-    Image value_;
-    Image variance_;
-    // Only where something is clipped: in how many planes with the module lit, and not …
-    Image clippedLit_;
-    Image clippedDark_;
-    // … and of its light the values over squared exposure, the squares, and the products with each column of space_.
-    Image noise_;
-    Image squares_;
-    std::vector<Image> moments_;
+    // … and a row of them per pixel.
+    Eigen::MatrixXf sums_;
+    // Only where something is clipped: the squares of its light in calm planes, and in how many planes with the module
+    // lit it is clipped, and in how many others.
+    Eigen::ArrayXf squares_;
+    Eigen::ArrayXf clippedLit_;
+    Eigen::ArrayXf clippedDark_;
 };
 
 }  // namespace skincal

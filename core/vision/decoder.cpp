@@ -4,16 +4,11 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
-#include <tuple>
 
 #include "core/vision/colour_mixing.h"
-#include "core/vision/frame_pass.h"
-#include "core/vision/late_pictures.h"
 #include "core/vision/looks.h"
-#include "core/vision/parallel.h"
-#include "core/vision/scan_motion.h"
 #include "core/vision/sightings.h"
-#include "core/vision/spot_maps.h"
+#include "core/vision/spot_passes.h"
 
 namespace skincal {
 namespace {
@@ -82,99 +77,13 @@ FrameLoader unmixing(const ColourMixing& mixing, const FrameLoader& load) {
 tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> modules, std::span<const FrameInfo> frames,
                                                    const FrameLoader& load, const DecoderOptions& options,
                                                    const RunContext& context) {
-    const auto words = litWords(modules, frames);
-    if (!words)
-        return tl::unexpected(ScanError{words.error(), false});
-    SpotScan scan;
-    scan.codebook = makeCodebook(*words);
-    const Codebook& codebook = scan.codebook;
-    const std::size_t perFrame = words->planesPerFrame();
-
-    std::optional<ColourMixing> mixing;
-    if (words->coloured) {
-        auto measured = ColourMixing::measured(frames, load);
-        if (!measured)
-            return tl::unexpected(ScanError{Sentence::verbatim(std::move(measured.error())), false});
-        mixing = *std::move(measured);
-    }
-    const FrameLoader loadPure = mixing ? unmixing(*mixing, load) : load;
-    FramePass pass(frames, loadPure, words->coloured, context);
-    SpotFinder finder(options.candidates);
-    cv::Size size;
-    auto done = pass.run(Sentence::saying("looking for spots"), 0, 0.4, [&](std::size_t, const FramePixels& frame) {
-        size = frame.size();
-        finder.add(frame, words->coloured);
-    });
-    if (!done)
-        return tl::unexpected(done.error());
-    std::vector<SpotCandidate> candidates =
-        finder.candidates(modules.size() * static_cast<std::size_t>(options.candidatesPerModule) +
-                          static_cast<std::size_t>(options.extraCandidates));
-    // Those side by side after each other: their windows share what a cache holds of a picture.
-    std::sort(candidates.begin(), candidates.end(), [](const SpotCandidate& a, const SpotCandidate& b) {
-        constexpr int kStripe = 16;
-        return std::make_tuple(a.y / kStripe, a.x, a.y) < std::make_tuple(b.y / kStripe, b.x, b.y);
-    });
-    scan.noise = finder.noise();
-
-    Verdicts verdicts(modules.size());
-    std::vector<MatchedSpot> matches;
-    ScanMotion motion(options.windowRadius, options.fit);
-    if (!candidates.empty()) {
-        scan.series = SpotSeries(codebook.planes(), candidates.size());
-        done = pass.run(Sentence::saying("reading spots"), 0.4, 0.75, [&](std::size_t k, const FramePixels& frame) {
-            for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane)
-                scan.series.read(frame, candidates, options.windowRadius, plane, words->planes[plane].channel);
-        });
-        if (!done)
-            return tl::unexpected(done.error());
-        scan.levelExposure(options.windowRadius);
-        auto matched = matchCandidates(scan, candidates, modules, options.words, context, verdicts);
-        if (!matched)
-            return tl::unexpected(ScanError{Sentence::saying("cancelled"), true});
-        matches = *std::move(matched);
-        if (const auto late = picturesLate(scan, matches.size(), options.words))
-            return tl::unexpected(ScanError{
-                Sentence::saying("{}: each picture shows what was lit {} before it: the camera is later than it was "
-                                 "waited for",
-                                 frames.front().file,
-                                 *late == 1 ? Sentence::saying("one picture") : Sentence::saying("two pictures")),
-                false});
-        prepareMaps(scan, size, options, matches, motion);
-    }
-    if (!matches.empty()) {
-        // Some pictures at a time: all maps together are larger than caches are, each is not.
-        constexpr std::size_t kAtOnce = 16;
-        std::vector<std::pair<std::size_t, FramePixels>> waiting;
-        const auto measure = [&] {
-            (void)forEach(matches.size(), {}, [&](std::size_t i) {
-                for (AmplitudeMap& map : matches[i].maps) {
-                    for (const auto& [plane, frame] : waiting)
-                        map.add(frame, plane, words->planes[plane].channel, scan.noise);
-                }
-            });
-            for (const auto& [plane, frame] : waiting)
-                motion.add(frame, plane, words->planes[plane].channel, scan.noise);
-            waiting.clear();
-        };
-        done = pass.run(Sentence::saying("measuring spots"), 0.75, 1, [&](std::size_t k, const FramePixels& frame) {
-            for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane)
-                waiting.emplace_back(plane, frame);
-            if (waiting.size() >= kAtOnce)
-                measure();
-        });
-        measure();
-        if (!done)
-            return tl::unexpected(done.error());
-    }
-    const bool isFitted = forEach(matches.size(), context, [&](std::size_t i) {
-        for (const AmplitudeMap& map : matches[i].maps)
-            matches[i].fits.push_back(fitSpot(map.window(), options.fit));
-    });
-    if (!isFitted)
-        return tl::unexpected(ScanError{Sentence::saying("cancelled"), true});
-
-    std::optional<double> moved_px = motion.moved_px();
+    const auto mixing = ColourMixing::measured(frames, load);
+    if (!mixing)
+        return tl::unexpected(ScanError{Sentence::verbatim(mixing.error()), false});
+    auto measured = measureSpots(modules, frames, *mixing ? unmixing(**mixing, load) : load, options, context);
+    if (!measured)
+        return tl::unexpected(std::move(measured.error()));
+    auto& [scan, matches, moved_px, verdicts] = *measured;
     // What moves leaves light that its word does not explain, about as much as the square of the way over that of a
     // spot's width.
     DecoderOptions moving = options;

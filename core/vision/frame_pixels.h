@@ -13,6 +13,8 @@ namespace skincal {
 /// A loaded frame, checked, with access to the pixels of its planes.
 class FramePixels {
   public:
+    static constexpr std::uint8_t kTop = 254;  ///< from here on a pixel is clipped
+
     /// Fails when the picture is empty or smaller than 4 x 4 pixels, not 8-bit with 1 or 3 channels, of another size
     /// than `expected` (if that is not empty), or grey where colours were lit.
     [[nodiscard]] static tl::expected<FramePixels, Sentence> make(cv::Mat picture, const std::string& file,
@@ -20,6 +22,8 @@ class FramePixels {
 
     [[nodiscard]] cv::Size size() const { return picture_.size(); }
     [[nodiscard]] const cv::Mat& picture() const { return picture_; }
+    /// Whether the plane is the mean of several channels.
+    [[nodiscard]] bool isMean(int channel) const { return picture_.channels() > 1 && channel < 0; }
     /// The whole plane as 8-bit grey.
     [[nodiscard]] cv::Mat plane(int channel) const;
     [[nodiscard]] double value(int x, int y, int channel) const {
@@ -41,7 +45,6 @@ class FramePixels {
     }
     /// True where any channel that the plane is made of sits at the end of its range.
     [[nodiscard]] bool saturated(int x, int y, int channel) const {
-        constexpr int kTop = 254;
         const std::uint8_t* pixel = at(x, y);
         if (picture_.channels() == 1)
             return pixel[0] >= kTop;

@@ -1,6 +1,7 @@
 #include "core/vision/lit_words.h"
 
 #include <unordered_map>
+#include <utility>
 
 namespace skincal {
 
@@ -23,6 +24,7 @@ tl::expected<LitWords, Sentence> litWords(std::span<const ModuleId> modules, std
         }
     }
     words.lit.resize(modules.size());
+    std::vector<std::size_t> lastLit(modules.size(), frames.size());  // the frame that lit it last
     for (std::size_t k = 0; k < frames.size(); ++k) {
         const std::size_t first = words.planes.size();
         if (words.coloured) {
@@ -31,13 +33,12 @@ tl::expected<LitWords, Sentence> litWords(std::span<const ModuleId> modules, std
         } else {
             words.planes.push_back({k, -1});
         }
-        std::unordered_map<ModuleId, bool> seen;
         for (const LitModule& lit : frames[k].lit) {
             const auto found = index.find(lit.module);
             if (found == index.end())
                 return tl::unexpected(Sentence::saying("{}: lights module {}, which the skin does not have",
                                                        frames[k].file, lit.module.value));
-            if (!seen.emplace(lit.module, true).second)
+            if (std::exchange(lastLit[found->second], k) == k)
                 return tl::unexpected(Sentence::saying("{}: lights module {} twice", frames[k].file, lit.module.value));
             auto& word = words.lit[found->second];
             if (!words.coloured) {

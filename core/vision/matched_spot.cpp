@@ -39,7 +39,7 @@ std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, st
         return std::nullopt;
     std::vector<MatchedSpot> matches;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        MatchedSpot spot{candidates[i], i, std::move(all[i]), {}, {}};
+        MatchedSpot spot{candidates[i], i, std::move(all[i])};
         const SeriesMatch& match = spot.series;
         switch (match.verdict) {
             case SeriesVerdict::Matched:

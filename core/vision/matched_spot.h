@@ -13,13 +13,15 @@
 
 namespace skincal {
 
-/// Light that some words explain together, and one map and one fit per word.
+/// Light that some words explain together, and a map and then a fit per word.
 struct MatchedSpot {
     SpotCandidate spot;
     std::size_t candidate = 0;  ///< position in the scan's series
     SeriesMatch series;
-    std::vector<AmplitudeMap> maps{};
+    std::vector<AmplitudeMap> maps{};  ///< until they are fitted
     std::vector<tl::expected<SpotFit, SpotFitError>> fits{};
+    std::vector<double>
+        strays{};  ///< per fit, of a clipped spot's light what follows another word; infinite: no telling
 };
 
 /// True where another LED's light in the spot is comparable with that of the match's word j: more than a quarter of it.

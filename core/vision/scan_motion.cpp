@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/geometry/statistics.h"
+#include "core/vision/parallel.h"
 #include "core/vision/surroundings.h"
 
 namespace skincal {
@@ -48,11 +49,11 @@ void ScanMotion::watch(const SpotCandidate& spot, cv::Size picture, const Codebo
                           AmplitudeMap(spot, radius_, picture, codebook, std::move(late))});
 }
 
-void ScanMotion::add(const FramePixels& frame, std::size_t plane, int channel, const ImageNoise& noise) {
-    for (Halves& spot : spots_) {
-        spot.early.add(frame, plane, channel, noise);
-        spot.late.add(frame, plane, channel, noise);
-    }
+void ScanMotion::add(std::span<const FramePlane> planes, const ImageNoise& noise) {
+    (void)forEach(spots_.size(), {}, [&](std::size_t i) {
+        spots_[i].early.add(planes, noise);
+        spots_[i].late.add(planes, noise);
+    });
 }
 
 std::optional<double> ScanMotion::moved_px() const {

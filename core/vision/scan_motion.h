@@ -23,7 +23,7 @@ class ScanMotion {
 
     /// A spot that one word explains; does nothing where its word can't be told from drift in one of the halves.
     void watch(const SpotCandidate& spot, cv::Size picture, const Codebook& codebook, const LightFilter& filter);
-    void add(const FramePixels& frame, std::size_t plane, int channel, const ImageNoise& noise);
+    void add(std::span<const FramePlane> planes, const ImageNoise& noise);
 
     /// Median shift over the spots, px; zero where it is no more than noise; nothing where fewer than three can tell.
     [[nodiscard]] std::optional<double> moved_px() const;

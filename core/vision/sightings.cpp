@@ -10,17 +10,6 @@
 namespace skincal {
 namespace {
 
-bool blindNear(const SpotWindow& window, const Vector2d& centre, double radius_px) {
-    for (Eigen::Index row = 0; row < window.state.rows(); ++row) {
-        for (Eigen::Index col = 0; col < window.state.cols(); ++col) {
-            const Vector2d pixel(static_cast<double>(window.x0 + col), static_cast<double>(window.y0 + row));
-            if (window.state(row, col) == PixelState::Excluded && (pixel - centre).norm() <= radius_px)
-                return true;
-        }
-    }
-    return false;
-}
-
 double whenSeen(const Codebook& codebook, const SeriesMatch& match, std::size_t module) {
     double sum = 0;
     double count = 0;
@@ -89,7 +78,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
     std::vector<Sighting> sightings;
     for (std::size_t i = 0; i < matches.size(); ++i) {
         const MatchedSpot& match = matches[i];
-        for (std::size_t j = 0; j < match.maps.size(); ++j) {
+        for (std::size_t j = 0; j < match.fits.size(); ++j) {
             const std::size_t module = match.series.words[j];
             const auto& fit = match.fits[j];
             if (!fit) {
@@ -106,11 +95,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
                               sentenceOf(SpotFitError::OutsideWindow), nearestSpot(scan, match, module));
                 continue;
             }
-            // Clipping hides a second LED from the series, which then looks like a disturbance, and makes light no
-            // longer add up.
-            if (shared ? blindNear(match.maps[j].window(), fit->centre, options.maxShift_px)
-                       : fit->clipped && (hasMoreLight(scan, match) ||
-                                          match.maps[j].strayShare(fit->centre, 3.5) > options.maxStrayShare)) {
+            if (match.strays[j] > options.maxStrayShare) {
                 verdicts.note(module, DetectionVerdict::Ambiguous, Undetected::Cause::TooBright,
                               Sentence::saying("its spot is clipped and has other light in it"),
                               nearestSpot(scan, match, module));

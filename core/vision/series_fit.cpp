@@ -24,27 +24,48 @@ SeriesFit::SeriesFit(const Codebook& codebook, const Eigen::VectorXd& y, double 
     : codebook_(codebook), ambient_(ambient), options_(options), y_(y), cameraSigma_(sigma) {
     const double spread = codebook.coloured ? options.colourSpread : options.brightnessSpread;
     sigma_ = std::hypot(sigma, spread * strength);
-    baseColumns_ = codebook.drift.cols();
-    base_ = Rows::Zero(y.size(), kMostColumns);
-    base_.leftCols(baseColumns_) = codebook.drift;
-    if (ambient.light.size() > 0)
-        base_.col(baseColumns_++) = ambient.light;
+    baseCount_ = codebook.drift.cols() + (hasAmbient() ? 1 : 0);
+    columns_.resize(y.size(), kMostUnknowns);
+    columns_.leftCols(codebook.drift.cols()) = codebook.drift;
+    if (hasAmbient())
+        columns_.col(baseCount_ - 1) = ambient.light.array() - ambient.light.mean();
+    const auto base = columns_.leftCols(baseCount_);
+    N_ = UnknownsSquare::Zero(kMostUnknowns, kMostUnknowns);
+    moment_ = Unknowns::Zero(kMostUnknowns);
+    N_.topLeftCorner(baseCount_, baseCount_) = base.transpose().lazyProduct(base);
+    moment_.head(baseCount_) = base.transpose() * y;
+    count_ = baseCount_;
+    residuals_.resize(y.size());
 }
 
-Explanation SeriesFit::explain(const std::vector<std::size_t>& words) const {
-    Rows rows = base_;
-    Eigen::Index columns = baseColumns_;
-    for (const std::size_t word : words) {
-        for (const std::size_t plane : codebook_.lit[word])
-            rows(static_cast<Eigen::Index>(plane), columns) = 1;
-        ++columns;
+/// Adds a column with ones in these planes.
+void SeriesFit::appendColumn(std::span<const std::size_t> planes) {
+    auto column = columns_.col(count_);
+    column.setZero();
+    for (const std::size_t plane : planes)
+        column[static_cast<Eigen::Index>(plane)] = 1;
+    for (Eigen::Index j = 0; j <= count_; ++j) {
+        double sum = 0;
+        for (const std::size_t plane : planes)
+            sum += columns_(static_cast<Eigen::Index>(plane), j);
+        N_(count_, j) = sum;
     }
+    double sum = 0;
+    for (const std::size_t plane : planes)
+        sum += y_[static_cast<Eigen::Index>(plane)];
+    moment_[count_++] = sum;
+}
+
+Explanation SeriesFit::explain(const std::vector<std::size_t>& words) {
+    count_ = baseCount_;
+    for (const std::size_t word : words)
+        appendColumn(codebook_.lit[word]);
     // The best of two starts: plain least squares, and (for single words) levels that hidden planes don't move.
-    Explanation best = refine(rows, columns, words, std::vector<std::uint8_t>(codebook_.planes(), 1));
+    Explanation best = refine(words, std::vector<std::uint8_t>(codebook_.planes(), 1));
     if (words.size() == 1 && !best.isClean()) {
         std::vector<std::uint8_t> used(codebook_.planes());
         (void)divide(residualsFromLevels(words[0]), used);
-        Explanation other = refine(rows, columns, words, std::move(used));
+        Explanation other = refine(words, std::move(used));
         if (other.cost < best.cost)
             best = std::move(other);
     }
@@ -111,15 +132,18 @@ bool SeriesFit::believable(const Explanation& e) const {
            e.explained >= (two ? options_.minExplainedByTwo : options_.minExplained);
 }
 
-double SeriesFit::costOfDarkness(const std::vector<std::uint8_t>& used) const {
+double SeriesFit::costOfDarkness(const std::vector<std::uint8_t>& used) {
     double least = explain({}).cost;
-    Rows rows = base_;
     const std::vector<std::uint8_t> all(codebook_.planes(), 1);
+    std::vector<std::size_t> after;
     for (std::size_t k = used.size(); k-- > 1;) {
-        rows(static_cast<Eigen::Index>(k), baseColumns_) = 1;
+        after.push_back(k);
         // A step that a word can be taken for lies where the word had to be helped.
-        if (used[k] != used[k - 1])
-            least = std::min(least, options_.outlier * options_.outlier + refine(rows, baseColumns_ + 1, {}, all).cost);
+        if (used[k] == used[k - 1])
+            continue;
+        count_ = baseCount_;
+        appendColumn(after);
+        least = std::min(least, options_.outlier * options_.outlier + refine({}, all).cost);
     }
     return least;
 }
@@ -161,29 +185,45 @@ Eigen::VectorXd SeriesFit::residualsFromLevels(std::size_t word) const {
 
 /// The cheapest division of the planes into used and disturbed ones (Viterbi), and its cost. A plane is used, the first
 /// of a run of disturbed ones, the second, or a later one.
-double SeriesFit::divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used) const {
-    constexpr std::uint8_t kUsed = 0;
-    constexpr std::uint8_t kFirst = 1;
-    constexpr std::uint8_t kSecond = 2;
-    constexpr std::uint8_t kLater = 3;
+double SeriesFit::divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used) {
+    enum State : std::uint8_t { kUsed, kFirst, kSecond, kLater };
     constexpr double kNever = std::numeric_limits<double>::infinity();
     const double enter = options_.outlier * options_.outlier;
     const double stay = options_.hiddenCost * options_.hiddenCost;
-    std::array<double, 4> cost{0, kNever, kNever, kNever};
-    std::vector<std::array<std::uint8_t, 4>> from(used.size());
-    const auto cheapest = [&] {
-        return static_cast<std::uint8_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
-    };
-    for (std::size_t k = 0; k < used.size(); ++k) {
-        const double misfit = std::pow(residuals[static_cast<Eigen::Index>(k)] / sigma_, 2);
-        const std::uint8_t goesOn = cost[kSecond] < cost[kLater] ? kSecond : kLater;
-        from[k] = {cheapest(), kUsed, kFirst, goesOn};
-        cost = {cost.at(cheapest()) + misfit, cost[kUsed] + enter, cost[kFirst] + enter, cost.at(goesOn) + stay};
+    // Where each plane is worth less than the cheapest disturbed one, and that is nearly everywhere, none is.
+    const double scale = 1 / (sigma_ * sigma_);
+    if (scale * residuals.cwiseAbs2().maxCoeff() <= stay) {
+        std::fill(used.begin(), used.end(), std::uint8_t{1});
+        return scale * residuals.squaredNorm();
     }
-    std::uint8_t state = cheapest();
-    const double least = cost.at(state);
-    for (std::size_t k = used.size(); k-- > 0; state = from[k].at(state))
+    double isUsed = 0;
+    double first = kNever;
+    double second = kNever;
+    double later = kNever;
+    std::uint8_t cheapest = kUsed;
+    const auto findCheapest = [&] {
+        const double disturbed = std::min(first, std::min(second, later));
+        cheapest = disturbed == first ? kFirst : disturbed == second ? kSecond : kLater;
+        cheapest = disturbed < isUsed ? cheapest : std::uint8_t{kUsed};
+        return std::min(isUsed, disturbed);
+    };
+    // Of a used plane which state was before it, and of a later one; the others leave no choice.
+    from_.resize(used.size());
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        const double residual = residuals[static_cast<Eigen::Index>(k)];
+        const double least = findCheapest();
+        from_[k] = {cheapest, second < later ? std::uint8_t{kSecond} : std::uint8_t{kLater}};
+        later = std::min(second, later) + stay;
+        second = first + enter;
+        first = isUsed + enter;
+        isUsed = least + scale * residual * residual;
+    }
+    const double least = findCheapest();
+    std::uint8_t state = cheapest;
+    for (std::size_t k = used.size(); k-- > 0;) {
         used[k] = state == kUsed ? 1 : 0;
+        state = state == kUsed ? from_[k][0] : state == kLater ? from_[k][1] : static_cast<std::uint8_t>(state - 1);
+    }
     return least;
 }
 
@@ -193,84 +233,112 @@ double SeriesFit::costOfNothing() const {
            std::max(0.0, planes - 2) * options_.hiddenCost * options_.hiddenCost;
 }
 
-Explanation SeriesFit::refine(Rows rows, Eigen::Index columns, const std::vector<std::size_t>& words,
-                              std::vector<std::uint8_t> used) const {
-    // Small enough for the stack: this is done some ten times per spot.
-    using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostColumns, kMostColumns>;
-    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostColumns, 1>;
+/// Nothing where the planes can't tell the columns apart.
+std::optional<SeriesFit::Solution> SeriesFit::solve(const std::vector<std::uint8_t>& used) const {
+    UnknownsSquare N = N_.topLeftCorner(count_, count_);
+    Unknowns moment = moment_.head(count_);
+    for (std::size_t plane = 0; plane < used.size(); ++plane) {
+        if (used[plane] != 0)
+            continue;
+        const auto k = static_cast<Eigen::Index>(plane);
+        for (Eigen::Index i = 0; i < count_; ++i) {
+            const double value = columns_(k, i);
+            moment[i] -= value * y_[k];
+            for (Eigen::Index j = 0; j <= i; ++j)
+                N(i, j) -= value * columns_(k, j);
+        }
+    }
+    Solution solution;
+    if (hasAmbient()) {
+        // Off its mean over the used planes (centred): the ambient less so much of the intercept's column.
+        const Eigen::Index a = baseCount_ - 1;
+        const double share = N(0, 0) > 0 ? N(a, 0) / N(0, 0) : 0.0;
+        N(a, a) -= share * N(a, 0);
+        for (Eigen::Index j = 0; j < a; ++j)
+            N(a, j) -= share * N(j, 0);
+        for (Eigen::Index i = a + 1; i < count_; ++i)
+            N(i, a) -= share * N(i, 0);
+        moment[a] -= share * moment[0];
+        N(a, a) += ridge();
+        solution.drifted = share;
+    }
+    solution.factor.compute(N);
+    // The drift columns are normalised, so small numbers here mean dependence, not scale.
+    if (solution.factor.info() != Eigen::Success || solution.factor.vectorD().minCoeff() < 1e-3)
+        return std::nullopt;
+    solution.values = solution.factor.solve(moment);
+    return solution;
+}
+
+void SeriesFit::setResiduals(const Solution& solution) {
+    Unknowns values = solution.values;
+    if (hasAmbient())
+        values[0] -= solution.drifted * values[baseCount_ - 1];
+    residuals_ = y_;
+    for (Eigen::Index j = 0; j < count_; ++j)
+        residuals_ -= values[j] * columns_.col(j);
+}
+
+/// Fits and drops disturbed planes in turn.
+Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector<std::uint8_t> used) {
     Explanation e;
     e.words = words;
-    const auto count = static_cast<Eigen::Index>(words.size());
-    Eigen::VectorXd residuals(y_.size());
-    std::vector<std::uint8_t> next(used.size());
+    next_.resize(used.size());
     for (int iteration = 1; iteration <= options_.maxIterations; ++iteration) {
-        if (ambient_.light.size() > 0)
-            rows.col(codebook_.drift.cols()) = centred(ambient_, used).light;
-        Square N = Square::Zero(columns, columns);
-        Column moment = Column::Zero(columns);
-        for (Eigen::Index k = 0; k < rows.rows(); ++k) {
-            if (used[static_cast<std::size_t>(k)] == 0)
-                continue;
-            for (Eigen::Index i = 0; i < columns; ++i) {
-                const double value = rows(k, i);
-                moment[i] += value * y_[k];
-                for (Eigen::Index j = 0; j <= i; ++j)
-                    N(i, j) += value * rows(k, j);
-            }
-        }
-        // The ambient's ridge is for camera noise; here LEDs that shine unevenly are noise, too.
-        const double ridge = ambient_.ridge * std::pow(sigma_ / cameraSigma_, 2);
-        if (ambient_.light.size() > 0)
-            N(codebook_.drift.cols(), codebook_.drift.cols()) += ridge;
-        const Eigen::LDLT<Square, Eigen::Lower> factor(N);
-        // The drift columns are normalised, so small numbers here mean dependence, not scale.
-        if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() < 1e-3) {
+        const auto solution = solve(used);
+        if (!solution) {
             // So few planes are left that nothing is known: as if all of them were disturbed.
-            if (count == 0)
+            if (words.empty())
                 e.cost = costOfNothing();
             return e;
         }
-        const Column solution = factor.solve(moment);
-        residuals.noalias() = y_ - rows.leftCols(columns) * solution;
-        if (ambient_.light.size() > 0)
-            e.ambient = solution[codebook_.drift.cols()];
-        const double cost = divide(residuals, next) + ridge * std::pow(e.ambient / sigma_, 2);
-        const bool settled = next == used;
-        std::swap(used, next);
+        setResiduals(*solution);
+        if (hasAmbient())
+            e.ambient = solution->values[baseCount_ - 1];
+        const double cost = divide(residuals_, next_) + ridge() * std::pow(e.ambient / sigma_, 2);
+        const bool settled = next_ == used;
+        std::swap(used, next_);
         if (!settled && iteration < options_.maxIterations)
             continue;
-        e.amplitudes = solution.tail(count);
-        e.drift = solution.head(codebook_.drift.cols());
+        e.amplitudes = solution->values.tail(static_cast<Eigen::Index>(words.size()));
+        e.drift = solution->values.head(codebook_.drift.cols());
         if ((e.amplitudes.array() <= 0).any())
             return e;
-        const Square inverse = factor.solve(Square::Identity(columns, columns));
-        const Column sigmas = cameraSigma_ * inverse.diagonal().cwiseSqrt();
-        // Planes that come and go leave no fit: what was solved and what would be kept belong to different planes,
-        // over which the words need not even be separable. Its cost is a cost all the same, which others must beat.
-        e.significant = settled && (e.amplitudes.array() > options_.minSignificance * sigmas.tail(count).array()).all();
         e.cost = cost;
-        double left = 0;
-        for (std::size_t k = 0; k < used.size(); ++k) {
-            if (used[k] != 0) {
-                left += std::pow(residuals[static_cast<Eigen::Index>(k)], 2);
-            } else {
-                ++e.disturbed;
-                e.runs += k == 0 || used[k - 1] != 0 ? 1U : 0U;
-            }
-        }
-        const double freedom =
-            static_cast<double>(used.size()) - static_cast<double>(e.disturbed) - static_cast<double>(columns);
-        e.reducedCost = freedom > 0 ? left / (sigma_ * sigma_) / freedom : 0.0;
-        if (count > 0) {
-            // What the sum of squares falls by where the words are let in.
-            const double energy = e.amplitudes.dot(inverse.bottomRightCorner(count, count).inverse() * e.amplitudes);
-            const double strange = std::max(0.0, left - cameraSigma_ * cameraSigma_ * std::max(0.0, freedom));
-            e.explained = energy / (energy + strange);
-        }
         e.used = std::move(used);
-        break;
+        judge(*solution, settled, e);
+        return e;
     }
     return e;
+}
+
+/// What there is to say of a fit besides its cost.
+void SeriesFit::judge(const Solution& solution, bool settled, Explanation& e) const {
+    const Eigen::Index words = e.amplitudes.size();
+    const UnknownsSquare inverse = solution.factor.solve(UnknownsSquare::Identity(count_, count_));
+    const Unknowns sigmas = cameraSigma_ * inverse.diagonal().tail(words).cwiseSqrt();
+    // Planes that come and go leave no fit: what was solved and what would be kept belong to different planes,
+    // over which the words need not even be separable. Its cost is a cost all the same, which others must beat.
+    e.significant = settled && (e.amplitudes.array() > options_.minSignificance * sigmas.array()).all();
+    double left = 0;
+    for (std::size_t k = 0; k < e.used.size(); ++k) {
+        if (e.used[k] != 0) {
+            left += std::pow(residuals_[static_cast<Eigen::Index>(k)], 2);
+        } else {
+            ++e.disturbed;
+            e.runs += k == 0 || e.used[k - 1] != 0 ? 1U : 0U;
+        }
+    }
+    const double freedom =
+        static_cast<double>(e.used.size()) - static_cast<double>(e.disturbed) - static_cast<double>(count_);
+    e.reducedCost = freedom > 0 ? left / (sigma_ * sigma_) / freedom : 0.0;
+    if (words > 0) {
+        // What the sum of squares falls by where the words are let in.
+        const UnknownsSquare ofWords = inverse.bottomRightCorner(words, words);
+        const double energy = e.amplitudes.dot(ofWords.inverse() * e.amplitudes);
+        const double strange = std::max(0.0, left - cameraSigma_ * cameraSigma_ * std::max(0.0, freedom));
+        e.explained = energy / (energy + strange);
+    }
 }
 
 }  // namespace skincal

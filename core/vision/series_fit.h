@@ -1,19 +1,30 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/vision/word_match.h"
 
 namespace skincal {
 
+/// Unknowns of a series at most: drift, ambient and two words, or a word and a step.
+constexpr int kMostUnknowns = 8;
+/// Small enough for the stack: some ten fits are made per spot.
+using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostUnknowns, 1>;
+using UnknownsSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostUnknowns, kMostUnknowns>;
+
 /// A series as the light of some words.
 struct Explanation {
     std::vector<std::size_t> words;
-    Eigen::VectorXd amplitudes;
-    Eigen::VectorXd drift;                                  ///< of the columns of Codebook::drift
+    Unknowns amplitudes;
+    Unknowns drift;                                         ///< of the columns of Codebook::drift
     double ambient = 0;                                     ///< share of what the surroundings do
     std::vector<std::uint8_t> used;                         ///< per plane, 0 where it is taken for disturbed
     double cost = std::numeric_limits<double>::infinity();  ///< -2 log likelihood
@@ -39,23 +50,33 @@ class SeriesFit {
               const WordMatchOptions& options);
 
     /// @param words  none, one or two
-    [[nodiscard]] Explanation explain(const std::vector<std::size_t>& words) const;
+    [[nodiscard]] Explanation explain(const std::vector<std::size_t>& words);
     /// Cost of no LED at all, only drift, ambient and disturbances; or of a single step besides, as a knock of the
     /// camera or somebody who stays makes one, which costs as much as a disturbance.
     /// @param used  of the best explanation: steps are tried where it begins or ends to leave planes out
-    [[nodiscard]] double costOfDarkness(const std::vector<std::uint8_t>& used) const;
+    [[nodiscard]] double costOfDarkness(const std::vector<std::uint8_t>& used);
     [[nodiscard]] bool believable(const Explanation& e) const;
 
   private:
-    static constexpr int kMostColumns = 8;
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, kMostColumns, Eigen::RowMajor>;
+    /// Least squares over the used planes.
+    struct Solution {
+        Eigen::LDLT<UnknownsSquare, Eigen::Lower> factor;  ///< of the normal matrix
+        Unknowns values;
+        double drifted = 0;  ///< what the first of the drift is less where the ambient is off its mean over all planes
+    };
 
-    [[nodiscard]] Explanation refine(Rows rows, Eigen::Index columns, const std::vector<std::size_t>& words,
-                                     std::vector<std::uint8_t> used) const;
+    [[nodiscard]] Explanation refine(const std::vector<std::size_t>& words, std::vector<std::uint8_t> used);
+    void appendColumn(std::span<const std::size_t> planes);
+    [[nodiscard]] std::optional<Solution> solve(const std::vector<std::uint8_t>& used) const;
+    void judge(const Solution& solution, bool settled, Explanation& e) const;
+    void setResiduals(const Solution& solution);
     [[nodiscard]] double costOfNothing() const;
+    /// The ambient's is for camera noise; here LEDs that shine unevenly are noise, too.
+    [[nodiscard]] double ridge() const { return ambient_.ridge * std::pow(sigma_ / cameraSigma_, 2); }
+    [[nodiscard]] bool hasAmbient() const { return ambient_.light.size() > 0; }
     [[nodiscard]] std::vector<std::uint8_t> calmPlanes(const Explanation& e) const;
     [[nodiscard]] bool mayBeDisturbance(const Explanation& e) const;
-    [[nodiscard]] double divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used) const;
+    [[nodiscard]] double divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used);
     [[nodiscard]] Eigen::VectorXd residualsFromLevels(std::size_t word) const;
 
     const Codebook& codebook_;
@@ -64,8 +85,17 @@ class SeriesFit {
     Eigen::VectorXd y_;
     double cameraSigma_;
     double sigma_;  ///< with the uneven brightness of the LEDs
-    Rows base_;     ///< drift and ambient, and room for words
-    Eigen::Index baseColumns_;
+    // Planes x unknowns: drift, ambient off its mean, and then the columns of what is being fitted.
+    Eigen::MatrixXd columns_;
+    Eigen::Index baseCount_ = 0;
+    Eigen::Index count_ = 0;
+    // Sums over all planes, of the columns with each other (lower triangle) and with y.
+    UnknownsSquare N_;
+    Unknowns moment_;
+    // Kept from one use to the next, so as not to be allocated each time.
+    Eigen::VectorXd residuals_;
+    std::vector<std::uint8_t> next_;
+    std::vector<std::array<std::uint8_t, 2>> from_;
 };
 
 }  // namespace skincal

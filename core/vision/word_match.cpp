@@ -34,13 +34,102 @@ Eigen::VectorXd offMean(const Eigen::VectorXd& y, const std::vector<std::uint8_t
     return off;
 }
 
-/// Pairs of which one at least is among the likeliest few.
-void explainPairs(const SeriesFit& fit, const Words& pool, std::vector<Explanation>& tried) {
+/// What of a series remains where the surroundings do what the explanation says, in the planes that it uses.
+Eigen::VectorXd visibleRest(const Eigen::VectorXd& y, const Ambient& ambient, const Explanation& e) {
+    const Ambient there = centred(ambient, e.used);
+    return offMean(there.light.size() > 0 ? Eigen::VectorXd(y - e.ambient * there.light) : y, e.used);
+}
+
+/// Explanations of one series against each other.
+class Contest {
+  public:
+    Contest(const Codebook& codebook, const WordMatchOptions& options, SeriesFit& fit)
+        : fit_(fit),
+          // A second word must earn its place, against all others that would have done.
+          second_(options.minMargin + 2 * std::log(static_cast<double>(codebook.lit.size()))) {}
+
+    void enterLeaders(std::span<const RankedWord> ranked);
+    void enterNew(std::span<const RankedWord> ranked);
+    /// Pairs of which one at least is among the likeliest few.
+    void enterPairs(const Words& pool);
+    [[nodiscard]] const Explanation& best() const {
+        return *std::min_element(tried_.begin(), tried_.end(), [this](const Explanation& a, const Explanation& b) {
+            return std::tuple(!a.significant, price(a)) < std::tuple(!b.significant, price(b));
+        });
+    }
+    /// Of the best over no light at all and over any other, and a word that is in what is nearest to it.
+    [[nodiscard]] std::pair<double, std::optional<std::size_t>> lead();
+
+  private:
+    [[nodiscard]] double price(const Explanation& e) const { return e.cost + (e.words.size() > 1 ? second_ : 0.0); }
+
+    SeriesFit& fit_;
+    double second_;
+    std::vector<Explanation> tried_;
+};
+
+void Contest::enterLeaders(std::span<const RankedWord> ranked) {
+    // Where the first leaves nothing to explain, only the next few could have been meant.
+    constexpr std::size_t kRivals = 3;
+    for (const RankedWord& word : ranked) {
+        if (tried_.size() > kRivals && tried_.front().isClean())
+            break;
+        tried_.push_back(fit_.explain({word.word}));
+    }
+}
+
+void Contest::enterNew(std::span<const RankedWord> ranked) {
+    for (const RankedWord& word : ranked) {
+        const bool isKnown = std::any_of(tried_.begin(), tried_.end(),
+                                         [&](const Explanation& e) { return e.words == Words{word.word}; });
+        if (!isKnown)
+            tried_.push_back(fit_.explain({word.word}));
+    }
+}
+
+void Contest::enterPairs(const Words& pool) {
     constexpr std::size_t kLikely = 3;
     for (std::size_t i = 0; i < std::min(kLikely, pool.size()); ++i) {
         for (std::size_t j = i + 1; j < pool.size(); ++j)
-            tried.push_back(fit.explain({pool[i], pool[j]}));
+            tried_.push_back(fit_.explain({pool[i], pool[j]}));
     }
+}
+
+std::pair<double, std::optional<std::size_t>> Contest::lead() {
+    const Explanation& first = best();
+    double margin = fit_.costOfDarkness(first.used) - price(first);
+    std::optional<std::size_t> runnerUp;
+    for (const Explanation& other : tried_) {
+        // A pair that contains the best word says the same about that word.
+        const bool same = std::all_of(first.words.begin(), first.words.end(),
+                                      [&](std::size_t word) { return contains(other.words, word); });
+        const double ahead = price(other) - price(first);
+        if (same || !(ahead < margin))
+            continue;
+        margin = ahead;
+        for (const std::size_t word : other.words) {
+            if (!contains(first.words, word))
+                runnerUp = word;
+        }
+    }
+    return {margin, runnerUp};
+}
+
+/// The words with their amplitudes, brightest first.
+SeriesMatch matchOf(const Explanation& e) {
+    SeriesMatch match;
+    std::vector<std::size_t> order(e.words.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto amplitude = [&](std::size_t j) { return e.amplitudes[static_cast<Eigen::Index>(j)]; };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return amplitude(a) > amplitude(b); });
+    for (const std::size_t j : order) {
+        match.words.push_back(e.words[j]);
+        match.amplitudes.push_back(amplitude(j));
+    }
+    match.used = e.used;
+    match.drift = e.drift;
+    match.ambient = e.ambient;
+    return match;
 }
 
 }  // namespace
@@ -63,49 +152,21 @@ SeriesMatch WordMatcher::match(std::span<const double> series, double sigma, con
         (ambient.light.size() > 0 && ambient.light.size() != codebook_.drift.rows()))
         throw std::logic_error("WordMatcher: the series does not belong to this codebook");
 
-    SeriesMatch match;
     const Eigen::VectorXd y =
         Eigen::Map<const Eigen::VectorXd>(series.data(), static_cast<Eigen::Index>(series.size()));
     const auto shortlist = static_cast<std::size_t>(options_.shortlist);
-    const Eigen::VectorXd off = offDrift(codebook_, ambient, y);
-    const std::vector<RankedWord> ranked = ranking_.best(off, shortlist);
+    const std::vector<RankedWord> ranked = ranking_.best(offDrift(codebook_, ambient, y), shortlist);
     if (ranked.empty())
-        return match;
+        return {};
     const RankedWord& lead = ranked.front();
     const double strength = std::sqrt(lead.score / codebook_.energy[lead.word]);
-    const SeriesFit fit(codebook_, y, sigma, strength, ambient, options_);
-
-    std::vector<Explanation> tried;
-    // Where the first leaves nothing to explain, only the next few could have been meant.
-    constexpr std::size_t kRivals = 3;
-    for (const RankedWord& word : ranked) {
-        if (tried.size() > kRivals && tried.front().isClean())
-            break;
-        tried.push_back(fit.explain({word.word}));
-    }
-    // A second word must earn its place, against all others that would have done.
-    const double second = options_.minMargin + 2 * std::log(static_cast<double>(codebook_.lit.size()));
-    const auto price = [&](const Explanation& e) { return e.cost + (e.words.size() > 1 ? second : 0.0); };
-    const auto better = [&](const Explanation& a, const Explanation& b) {
-        return std::tuple(!a.significant, price(a)) < std::tuple(!b.significant, price(b));
-    };
-    auto best = std::min_element(tried.begin(), tried.end(), better);
-    const auto isKnown = [&](std::size_t word) {
-        return std::any_of(tried.begin(), tried.end(), [&](const Explanation& e) { return e.words == Words{word}; });
-    };
+    SeriesFit fit(codebook_, y, sigma, strength, ambient, options_);
+    Contest contest(codebook_, options_, fit);
+    contest.enterLeaders(ranked);
     // What hides an LED for long also hides its word from a ranking over all planes: once more over those that remain.
-    if (best->significant && best->disturbed > 0) {
-        const std::vector<std::uint8_t> used = best->used;
-        const Ambient there = centred(ambient, used);
-        Eigen::VectorXd rest = y;
-        rest -= there.light.size() > 0 ? Eigen::VectorXd(best->ambient * there.light) : Eigen::VectorXd::Zero(y.size());
-        for (const RankedWord& word : ranking_.best(offMean(rest, used), shortlist)) {
-            if (!isKnown(word.word))
-                tried.push_back(fit.explain({word.word}));
-        }
-        best = std::min_element(tried.begin(), tried.end(), better);
-    }
-    if (best->disturbed > 0 || !fit.believable(*best)) {
+    if (contest.best().significant && contest.best().disturbed > 0)
+        contest.enterNew(ranking_.best(visibleRest(y, ambient, contest.best()), shortlist));
+    if (contest.best().disturbed > 0 || !fit.believable(contest.best())) {
         // Two LEDs in one spot: the other one shows best in what the first leaves.
         Words pool;
         for (const RankedWord& word : ranked)
@@ -117,41 +178,16 @@ SeriesMatch WordMatcher::match(std::span<const double> series, double sigma, con
             if (!contains(pool, word.word))
                 pool.push_back(word.word);
         }
-        explainPairs(fit, pool, tried);
-        best = std::min_element(tried.begin(), tried.end(), better);
+        contest.enterPairs(pool);
     }
-    if (!best->significant)
-        return match;
-
-    std::vector<std::size_t> order(best->words.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return best->amplitudes[static_cast<Eigen::Index>(a)] > best->amplitudes[static_cast<Eigen::Index>(b)];
-    });
-    for (const std::size_t j : order) {
-        match.words.push_back(best->words[j]);
-        match.amplitudes.push_back(best->amplitudes[static_cast<Eigen::Index>(j)]);
-    }
-    match.used = best->used;
-    match.drift = best->drift;
-    match.ambient = best->ambient;
-    match.margin = fit.costOfDarkness(best->used) - price(*best);
-    for (const Explanation& other : tried) {
-        // A pair that contains the best word says the same about that word.
-        const bool same = std::all_of(best->words.begin(), best->words.end(),
-                                      [&](std::size_t word) { return contains(other.words, word); });
-        const double ahead = price(other) - price(*best);
-        if (same || !(ahead < match.margin))
-            continue;
-        match.margin = ahead;
-        for (const std::size_t word : other.words) {
-            if (!contains(best->words, word))
-                match.runnerUp = word;
-        }
-    }
+    const Explanation& best = contest.best();
+    if (!best.significant)
+        return {};
+    SeriesMatch match = matchOf(best);
+    std::tie(match.margin, match.runnerUp) = contest.lead();
     // Asked once more with the brightest word first, as callers will: near a dependence the order can decide.
     const bool separable = amplitudeWeights(codebook_, match.words, match.used, ambient).size() > 0;
-    if (!separable || !fit.believable(*best))
+    if (!separable || !fit.believable(best))
         match.verdict = SeriesVerdict::Unlike;
     else
         match.verdict = match.margin >= options_.minMargin ? SeriesVerdict::Matched : SeriesVerdict::Ambiguous;

@@ -136,15 +136,15 @@ Eigen::MatrixXf AmplitudeMap::factorsOf(std::span<const FramePlane* const> plane
 }
 
 void AmplitudeMap::noteClipped(const FramePlane& plane, const Eigen::Ref<const Eigen::ArrayXf>& values) {
-    const float highest = values.maxCoeff();
     Eigen::ArrayXf& clipped = lit_[plane.plane] != 0 ? clippedLit_ : clippedDark_;
+    constexpr float kTop = FramePixels::kTop;
     if (!plane.frame.isMean(plane.channel)) {
-        if (highest >= FramePixels::kTop)
-            clipped += (values >= FramePixels::kTop).cast<float>();
+        for (Eigen::Index i = 0; i < values.size(); ++i)
+            clipped[i] += values[i] >= kTop ? 1.0F : 0.0F;
         return;
     }
     // Of three channels one may be clipped where their mean is dark.
-    if (highest < FramePixels::kTop / 3)
+    if (values.maxCoeff() < kTop / 3)
         return;
     Eigen::Index i = 0;
     for (int y = rect_.y; y < rect_.y + rect_.height; ++y) {

@@ -6,6 +6,7 @@
 
 #include "core/geometry/statistics.h"
 #include "core/vision/local_contrast.h"
+#include "core/vision/parallel.h"
 
 namespace skincal {
 namespace {
@@ -162,25 +163,31 @@ void SpotFinder::noteStep(const cv::Mat& now, const cv::Mat& before, cv::Mat& la
 std::vector<SpotCandidate> SpotFinder::candidates(std::size_t most) const {
     if (last_.empty())
         return {};
-    std::vector<SpotCandidate> found;
-    const auto append = [&](const cv::Mat& change, bool isHalf) {
-        const std::vector<SpotCandidate> more = maximaOf(change, isHalf, options_);
-        found.insert(found.end(), more.begin(), more.end());
+    struct Change {
+        cv::Mat map;
+        bool isHalf = false;
+        std::vector<SpotCandidate> maxima{};
     };
-    cv::Mat change;
-    if (summed_ > 0 && summed_ <= kMostSummed) {
-        // What blinks changes in about half of the steps.
-        sum_.convertTo(change, CV_32F, 2.0 / summed_);
-        // The mean over all steps has little noise left: spots that nearly touch must stay apart.
-        cv::GaussianBlur(change, change, cv::Size(), 0.5 * options_.smoothing_px);
-        append(change, false);
-    }
+    std::vector<Change> changes;
+    if (summed_ > 0 && summed_ <= kMostSummed)
+        changes.push_back({sum_, false});
     if (!jump_.empty()) {
-        jump_.convertTo(change, CV_32F, 1 / kContrastUnits);
-        append(change, true);
-        flash_.convertTo(change, CV_32F, 1 / kContrastUnits);
-        append(change, true);
+        changes.push_back({jump_, true});
+        changes.push_back({flash_, true});
     }
+    (void)forEach(changes.size(), {}, [&](std::size_t i) {
+        Change& change = changes[i];
+        cv::Mat levels;
+        // What blinks changes in about half of the steps.
+        change.map.convertTo(levels, CV_32F, change.isHalf ? 1 / kContrastUnits : 2.0 / summed_);
+        // The mean over all steps has little noise left: spots that nearly touch must stay apart.
+        if (!change.isHalf)
+            cv::GaussianBlur(levels, levels, cv::Size(), 0.5 * options_.smoothing_px);
+        change.maxima = maximaOf(levels, change.isHalf, options_);
+    });
+    std::vector<SpotCandidate> found;
+    for (const Change& change : changes)
+        found.insert(found.end(), change.maxima.begin(), change.maxima.end());
 
     // A plateau (a clipped spot) has many equal maxima: keep one of each neighbourhood.
     cv::Mat taken = cv::Mat::zeros(sum_.size(), CV_8U);

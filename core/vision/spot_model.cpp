@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace skincal {
@@ -10,11 +11,14 @@ namespace {
 
 constexpr Eigen::Index kMostAcross = 61;
 
+/// Pixels below each other, with which processors reckon at once.
+using Pair = Eigen::Array2d;
+
 /// exp(-u^2 / 2s^2) along an axis.
 struct Profile {
-    std::array<double, kMostAcross> away{};
-    std::array<double, kMostAcross> core{};
-    std::array<double, kMostAcross> halo{};
+    std::array<double, kMostAcross + 1> away{};
+    std::array<double, kMostAcross + 1> core{};
+    std::array<double, kMostAcross + 1> halo{};
 
     Profile(int first, Eigen::Index count, double centre, double inverse, double haloInverse) {
         for (Eigen::Index i = 0; i < count; ++i) {
@@ -30,11 +34,23 @@ struct Profile {
 }  // namespace
 
 SpotModel::SpotModel(const SpotWindow& window, const SpotPrior& prior, double haloWidth)
-    : window_(window), prior_(prior), haloWidth_(haloWidth), weight_(window.value.rows(), window.value.cols()) {
-    if (weight_.rows() > kMostAcross || weight_.cols() > kMostAcross)
+    : window_(window), prior_(prior), haloWidth_(haloWidth) {
+    const Eigen::Index rows = window.value.rows();
+    const Eigen::Index cols = window.value.cols();
+    if (rows > kMostAcross || cols > kMostAcross)
         throw std::logic_error("SpotModel: the window is too large");
-    for (Eigen::Index i = 0; i < weight_.size(); ++i)
-        weight_(i) = window.state(i) == PixelState::Excluded ? 0 : 1 / window.variance(i);
+    weight_ = Eigen::ArrayXXd::Zero(rows + rows % 2, cols);
+    value_ = weight_;
+    bound_ = Eigen::ArrayXXd::Constant(weight_.rows(), cols, std::numeric_limits<double>::infinity());
+    value_.topRows(rows) = window.value;
+    for (Eigen::Index col = 0; col < cols; ++col) {
+        for (Eigen::Index row = 0; row < rows; ++row) {
+            if (window.state(row, col) != PixelState::Excluded)
+                weight_(row, col) = 1 / window.variance(row, col);
+            if (window.state(row, col) == PixelState::Saturated)
+                bound_(row, col) = 0;
+        }
+    }
 }
 
 SpotModel::Normals SpotModel::at(const SpotParameters& p) const {
@@ -44,44 +60,46 @@ SpotModel::Normals SpotModel::at(const SpotParameters& p) const {
     const Profile x(window_.x0, weight_.cols(), p[0], inverse, haloInverse);
     const Profile y(window_.y0, weight_.rows(), p[1], inverse, haloInverse);
     Normals normals;
-    // Lower triangle, row by row: the compiler keeps plain numbers in registers.
-    std::array<double, 21> N{};
-    std::array<double, 6> g{};
+    // Lower triangle, row by row.
+    std::array<Pair, 21> N;
+    std::array<Pair, 6> g;
+    N.fill(Pair::Zero());
+    g.fill(Pair::Zero());
+    Pair misfit = Pair::Zero();
     for (Eigen::Index col = 0; col < weight_.cols(); ++col) {
         const auto i = static_cast<std::size_t>(col);
         const double core = amplitude * x.core.at(i);
         const double halo = amplitude * x.halo.at(i);
         const double dx = x.away.at(i);
-        for (Eigen::Index row = 0; row < weight_.rows(); ++row) {
-            const double weight = weight_(row, col);
-            if (weight == 0)
-                continue;
+        for (Eigen::Index row = 0; row < weight_.rows(); row += 2) {
             const auto j = static_cast<std::size_t>(row);
-            const double inCore = core * y.core.at(j);
-            const double inHalo = halo * y.halo.at(j);
-            const double light = inCore + p[5] * inHalo;
-            const double residual = p[4] + light - window_.value(row, col);
-            if (residual >= 0 && window_.state(row, col) == PixelState::Saturated)
-                continue;
-            ++normals.informative;
-            normals.misfit += weight * residual * residual;
-            const double slope = inCore * inverse + p[5] * inHalo * haloInverse;
-            const double dy = y.away.at(j);
-            const std::array<double, 6> J{slope * dx, slope * dy, light, slope * (dx * dx + dy * dy), 1, inHalo};
+            const Pair inCore = core * Pair(y.core[j], y.core[j + 1]);
+            const Pair inHalo = halo * Pair(y.halo[j], y.halo[j + 1]);
+            const Pair light = inCore + p[5] * inHalo;
+            const Pair residual = p[4] + light - value_.block<2, 1>(row, col);
+            Pair weight = weight_.block<2, 1>(row, col);
+            // A bound that is met says nothing.
+            weight *= (residual < bound_.block<2, 1>(row, col)).cast<double>();
+            normals.informative += static_cast<int>((weight > 0).count());
+            misfit += weight * residual * residual;
+            const Pair slope = inCore * inverse + p[5] * inHalo * haloInverse;
+            const Pair dy(y.away[j], y.away[j + 1]);
+            const std::array<Pair, 6> J{slope * dx, slope * dy, light, slope * (dx * dx + dy * dy), Pair(1, 1), inHalo};
             std::size_t k = 0;
             for (std::size_t a = 0; a < 6; ++a) {
-                const double weighted = weight * J[a];
+                const Pair weighted = weight * J[a];
                 g[a] += weighted * residual;
                 for (std::size_t b = 0; b <= a; ++b)
                     N[k++] += weighted * J[b];
             }
         }
     }
+    normals.misfit = misfit.sum();
     std::size_t k = 0;
     for (Eigen::Index a = 0; a < 6; ++a) {
-        normals.g[a] = g.at(static_cast<std::size_t>(a));
+        normals.g[a] = g.at(static_cast<std::size_t>(a)).sum();
         for (Eigen::Index b = 0; b <= a; ++b)
-            normals.N(a, b) = normals.N(b, a) = N.at(k++);
+            normals.N(a, b) = normals.N(b, a) = N.at(k++).sum();
     }
     normals.cost = normals.misfit;
     const auto believe = [&](Eigen::Index parameter, double mean, double sigma) {
@@ -96,34 +114,34 @@ SpotModel::Normals SpotModel::at(const SpotParameters& p) const {
 }
 
 double SpotModel::explainedShare(const SpotParameters& p) const {
+    const auto eachGood = [&](const auto& visit) {
+        for (Eigen::Index col = 0; col < window_.value.cols(); ++col) {
+            for (Eigen::Index row = 0; row < window_.value.rows(); ++row) {
+                if (window_.state(row, col) == PixelState::Good)
+                    visit(row, col, weight_(row, col), window_.value(row, col));
+            }
+        }
+    };
     double weights = 0;
     double mean = 0;
-    const auto isGood = [&](Eigen::Index i) { return window_.state(i) == PixelState::Good; };
-    for (Eigen::Index i = 0; i < weight_.size(); ++i) {
-        if (isGood(i)) {
-            weights += weight_(i);
-            mean += weight_(i) * window_.value(i);
-        }
-    }
+    eachGood([&](Eigen::Index, Eigen::Index, double weight, double value) {
+        weights += weight;
+        mean += weight * value;
+    });
     mean /= weights;
+    // Bounds that are not met are misfit, too, but not of these pixels.
     double total = 0;
     double met = 0;
-    for (Eigen::Index i = 0; i < weight_.size(); ++i) {
-        if (isGood(i))
-            total += weight_(i) * std::pow(window_.value(i) - mean, 2);
-    }
-    // Bounds that are not met are misfit, too, but not of these pixels.
     const double amplitude = std::exp(p[2]);
     const double inverse = std::exp(-2 * p[3]);
-    for (Eigen::Index i = 0; i < weight_.size(); ++i) {
-        if (!isGood(i))
-            continue;
-        const double dx = window_.x0 + static_cast<double>(i / weight_.rows()) - p[0];
-        const double dy = window_.y0 + static_cast<double>(i % weight_.rows()) - p[1];
+    eachGood([&](Eigen::Index row, Eigen::Index col, double weight, double value) {
+        total += weight * std::pow(value - mean, 2);
+        const double dx = window_.x0 + static_cast<double>(col) - p[0];
+        const double dy = window_.y0 + static_cast<double>(row) - p[1];
         const double r2 = 0.5 * inverse * (dx * dx + dy * dy);
         const double light = amplitude * (std::exp(-r2) + p[5] * std::exp(-r2 / (haloWidth_ * haloWidth_)));
-        met += weight_(i) * std::pow(p[4] + light - window_.value(i), 2);
-    }
+        met += weight * std::pow(p[4] + light - value, 2);
+    });
     return total > 0 ? 1 - met / total : 0.0;
 }
 

@@ -37,7 +37,10 @@ class SpotModel {
     const SpotWindow& window_;
     SpotPrior prior_;
     double haloWidth_;
+    // As many rows as the window or one more, of no weight, so that they make pairs.
     Eigen::ArrayXXd weight_;  ///< 1 / sigma^2; 0 where the pixel is excluded
+    Eigen::ArrayXXd value_;
+    Eigen::ArrayXXd bound_;  ///< residuals from here on don't count: 0 where the pixel is clipped, else infinite
 };
 
 }  // namespace skincal

@@ -111,8 +111,18 @@ Eigen::MatrixXd explainedSpace(const Codebook& codebook, std::span<const std::si
         if (used[static_cast<std::size_t>(k)] == 0)
             X.row(k).setZero();
     }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> factor(X);
-    return factor.householderQ() * Eigen::MatrixXd::Identity(X.rows(), X.cols());
+    // By the Cholesky factor of the normal matrix, which is quick, but where that is nearly singular.
+    constexpr double kNearlySingular = 1e-6;
+    const Eigen::MatrixXd N = X.transpose().lazyProduct(X);
+    const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor(N);
+    const Eigen::MatrixXd& L = factor.matrixLLT();
+    if (factor.info() == Eigen::Success &&
+        (L.diagonal().array().square() > kNearlySingular * N.diagonal().array()).all()) {
+        factor.matrixU().solveInPlace<Eigen::OnTheRight>(X);
+        return X;
+    }
+    const Eigen::HouseholderQR<Eigen::MatrixXd> orthogonal(X);
+    return orthogonal.householderQ() * Eigen::MatrixXd::Identity(X.rows(), X.cols());
 }
 
 }  // namespace skincal

@@ -14,32 +14,52 @@ constexpr int kCore = 2;
 // exp(-r^2 / 2 s^2) with s = 1.2 at r = 0, 1, 2.
 constexpr std::array<double, 3> kTap{1.0, 0.70665, 0.24935};
 constexpr int kLargestRadius = 30;
-constexpr int kLevels = 3 * 255 + 1;  // of three channels together
+constexpr std::size_t kLevels = 256;
+constexpr std::size_t kLevelsOfSum = 3 * 255 + 1;  // of three channels together
 
-/// @param pixel  grey level of a place times some whole number, as an int
-template <class Pixel>
+/// Mean of the darker half of `count` values, by counting: there are few levels, and this is done for every spot in
+/// every plane.
+template <std::size_t levels>
+double darkerHalf(const int* values, std::size_t count) {
+    const std::size_t half = (count + 1) / 2;
+    std::array<std::uint8_t, levels> counts{};
+    int level = static_cast<int>(levels);
+    for (std::size_t i = 0; i < count; ++i) {
+        ++counts[static_cast<std::size_t>(values[i])];
+        level = std::min(level, values[i]);
+    }
+    int darker = 0;
+    for (std::size_t left = half; left > 0; ++level) {
+        const auto here = std::min<std::size_t>(left, counts[static_cast<std::size_t>(level)]);
+        darker += level * static_cast<int>(here);
+        left -= here;
+    }
+    return darker / static_cast<double>(half);
+}
+
+/// @param pixel  grey level of a place times some whole number, as an int below `levels`
+template <std::size_t levels, class Pixel>
 SpotBrightness brightness(cv::Size size, const SpotCandidate& spot, int radius, double scale, const Pixel& pixel) {
+    const cv::Rect picture({}, size);
+    const auto around = [&](int reach) {
+        return cv::Rect(spot.x - reach, spot.y - reach, 2 * reach + 1, 2 * reach + 1);
+    };
     double sum = 0;
     double weights = 0;
-    SpotBrightness result;
-    for (int dy = -kCore; dy <= kCore; ++dy) {
-        const int y = spot.y + dy;
-        if (y < 0 || y >= size.height)
-            continue;
-        for (int dx = -kCore; dx <= kCore; ++dx) {
-            const int x = spot.x + dx;
-            if (x < 0 || x >= size.width)
-                continue;
-            const double weight =
-                kTap[static_cast<std::size_t>(std::abs(dx))] * kTap[static_cast<std::size_t>(std::abs(dy))];
+    const cv::Rect core = around(kCore) & picture;
+    for (int y = core.y; y < core.y + core.height; ++y) {
+        const double tap = kTap[static_cast<std::size_t>(std::abs(y - spot.y))];
+        for (int x = core.x; x < core.x + core.width; ++x) {
+            const double weight = tap * kTap[static_cast<std::size_t>(std::abs(x - spot.x))];
             sum += weight * pixel(x, y);
             weights += weight;
         }
     }
-    std::array<int, std::size_t{8} * kLargestRadius> edge{};
+    std::array<int, std::size_t{8} * kLargestRadius> edge;
     std::size_t count = 0;
+    const bool isInside = (around(radius) & picture) == around(radius);
     const auto visit = [&](int x, int y) {
-        if (x >= 0 && y >= 0 && x < size.width && y < size.height)
+        if (isInside || picture.contains({x, y}))
             edge[count++] = pixel(x, y);
     };
     for (int i = -radius; i < radius; ++i) {
@@ -48,23 +68,9 @@ SpotBrightness brightness(cv::Size size, const SpotCandidate& spot, int radius, 
         visit(spot.x - i, spot.y + radius);
         visit(spot.x - radius, spot.y - i);
     }
-    if (count > 0) {
-        // The darker half by counting: there are few levels, and this is done for every spot in every plane.
-        const std::size_t half = (count + 1) / 2;
-        std::array<std::uint8_t, kLevels> counts{};
-        int level = kLevels;
-        for (std::size_t i = 0; i < count; ++i) {
-            ++counts[static_cast<std::size_t>(edge[i])];
-            level = std::min(level, edge[i]);
-        }
-        int darker = 0;
-        for (std::size_t left = half; left > 0; ++level) {
-            const auto here = std::min<std::size_t>(left, counts[static_cast<std::size_t>(level)]);
-            darker += level * static_cast<int>(here);
-            left -= here;
-        }
-        result.around = scale * darker / static_cast<double>(half);
-    }
+    SpotBrightness result;
+    if (count > 0)
+        result.around = scale * darkerHalf<levels>(edge.data(), count);
     result.level = scale * sum / weights;
     result.value = result.level - result.around;
     return result;
@@ -78,12 +84,15 @@ SpotBrightness spotBrightness(const FramePixels& frame, const SpotCandidate& spo
     const cv::Mat& picture = frame.picture();
     SpotBrightness result;
     if (picture.channels() == 1) {
-        result = brightness(picture.size(), spot, radius, 1, [&](int x, int y) { return int{picture.ptr(y)[x]}; });
+        result = brightness<kLevels>(
+            picture.size(), spot, radius, 1, [data = picture.data, step = picture.step[0]](int x, int y) {
+                return int{data[static_cast<std::size_t>(y) * step + static_cast<std::size_t>(x)]};
+            });
     } else if (channel >= 0) {
-        result = brightness(picture.size(), spot, radius, 1,
-                            [&](int x, int y) { return int{picture.ptr(y)[3 * x + channel]}; });
+        result = brightness<kLevels>(picture.size(), spot, radius, 1,
+                                     [&](int x, int y) { return int{picture.ptr(y)[3 * x + channel]}; });
     } else {
-        result = brightness(picture.size(), spot, radius, 1.0 / 3, [&](int x, int y) {
+        result = brightness<kLevelsOfSum>(picture.size(), spot, radius, 1.0 / 3, [&](int x, int y) {
             const std::uint8_t* pixel = picture.ptr(y) + static_cast<std::ptrdiff_t>(3) * x;
             return int{pixel[0]} + pixel[1] + pixel[2];
         });

@@ -136,6 +136,8 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
     if (!view)
         return view;
     view->name = std::move(name);
+    if (end == frames.size())
+        return view;
     return decodeFurther(*std::move(view), end, modules, frames, load, options, context);
 }
 

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/vision/parallel.h"
+
 namespace skincal {
 namespace {
 
@@ -43,44 +45,48 @@ void weigh(const std::uint16_t* row, const std::vector<std::uint16_t>& weights, 
 
 cv::Mat smoothRows(const cv::Mat& plane, cv::Size size, const std::vector<std::uint16_t>& weights) {
     const int reach = static_cast<int>(weights.size()) - 1;
-    std::vector<std::uint16_t> padded(static_cast<std::size_t>(size.width + 2 * reach));
     cv::Mat result(size, CV_16U);
-    for (int y = 0; y < size.height; ++y) {
-        const auto* upper = plane.ptr<std::uint8_t>(2 * y);
-        const auto* lower = plane.ptr<std::uint8_t>(2 * y + 1);
-        std::uint16_t* row = padded.data() + reach;
-        for (int x = 0; x < size.width; ++x)
-            row[x] = static_cast<std::uint16_t>(upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1]);
-        std::fill(padded.begin(), padded.begin() + reach, row[0]);
-        std::fill(padded.end() - reach, padded.end(), row[size.width - 1]);
-        auto* to = result.ptr<std::uint16_t>(y);
-        weigh(row, weights, size.width, to);
-        for (int x = 0; x < size.width; ++x)
-            to[x] = static_cast<std::uint16_t>(to[x] >> 2);
-    }
+    forBands(size.height, [&](int first, int last) {
+        std::vector<std::uint16_t> padded(static_cast<std::size_t>(size.width + 2 * reach));
+        for (int y = first; y < last; ++y) {
+            const auto* upper = plane.ptr<std::uint8_t>(2 * y);
+            const auto* lower = plane.ptr<std::uint8_t>(2 * y + 1);
+            std::uint16_t* row = padded.data() + reach;
+            for (int x = 0; x < size.width; ++x)
+                row[x] = static_cast<std::uint16_t>(upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1]);
+            std::fill(padded.begin(), padded.begin() + reach, row[0]);
+            std::fill(padded.end() - reach, padded.end(), row[size.width - 1]);
+            auto* to = result.ptr<std::uint16_t>(y);
+            weigh(row, weights, size.width, to);
+            for (int x = 0; x < size.width; ++x)
+                to[x] = static_cast<std::uint16_t>(to[x] >> 2);
+        }
+    });
     return result;
 }
 
 cv::Mat smoothColumns(const cv::Mat& rows, const std::vector<std::uint16_t>& weights) {
     cv::Mat result(rows.size(), CV_16S);
-    std::vector<std::uint16_t> sum(static_cast<std::size_t>(rows.cols));
     const auto rowAt = [&](int y) { return rows.ptr<std::uint16_t>(std::clamp(y, 0, rows.rows - 1)); };
-    for (int y = 0; y < rows.rows; ++y) {
-        const std::uint16_t* middle = rowAt(y);
-        for (int x = 0; x < rows.cols; ++x)
-            sum[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(weights[0] * middle[x]);
-        for (int k = 1; k < static_cast<int>(weights.size()); ++k) {
-            const std::uint16_t* above = rowAt(y - k);
-            const std::uint16_t* below = rowAt(y + k);
-            const std::uint16_t weight = weights[static_cast<std::size_t>(k)];
+    forBands(rows.rows, [&](int first, int last) {
+        std::vector<std::uint16_t> sum(static_cast<std::size_t>(rows.cols));
+        for (int y = first; y < last; ++y) {
+            const std::uint16_t* middle = rowAt(y);
             for (int x = 0; x < rows.cols; ++x)
-                sum[static_cast<std::size_t>(x)] =
-                    static_cast<std::uint16_t>(sum[static_cast<std::size_t>(x)] + weight * (above[x] + below[x]));
+                sum[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(weights[0] * middle[x]);
+            for (int k = 1; k < static_cast<int>(weights.size()); ++k) {
+                const std::uint16_t* above = rowAt(y - k);
+                const std::uint16_t* below = rowAt(y + k);
+                const std::uint16_t weight = weights[static_cast<std::size_t>(k)];
+                for (int x = 0; x < rows.cols; ++x)
+                    sum[static_cast<std::size_t>(x)] =
+                        static_cast<std::uint16_t>(sum[static_cast<std::size_t>(x)] + weight * (above[x] + below[x]));
+            }
+            auto* to = result.ptr<std::int16_t>(y);
+            for (int x = 0; x < rows.cols; ++x)
+                to[x] = static_cast<std::int16_t>(sum[static_cast<std::size_t>(x)] >> 2);
         }
-        auto* to = result.ptr<std::int16_t>(y);
-        for (int x = 0; x < rows.cols; ++x)
-            to[x] = static_cast<std::int16_t>(sum[static_cast<std::size_t>(x)] >> 2);
-    }
+    });
     return result;
 }
 
@@ -90,33 +96,35 @@ cv::Mat lessSurroundings(const cv::Mat& smooth, int side) {
     const float share = 1.0F / static_cast<float>(side * side);
     cv::Mat result(smooth.size(), CV_16S);
     const auto rowAt = [&](int y) { return smooth.ptr<std::int16_t>(std::clamp(y, 0, smooth.rows - 1)); };
-    // Sums over columns, kept from row to row.
-    std::vector<std::int32_t> padded(static_cast<std::size_t>(smooth.cols + 2 * reach), 0);
-    std::vector<std::int32_t> sum(static_cast<std::size_t>(smooth.cols));
-    std::int32_t* column = padded.data() + reach;
-    for (int k = -reach - 1; k < reach; ++k) {
-        for (int x = 0; x < smooth.cols; ++x)
-            column[x] += rowAt(k)[x];
-    }
-    for (int y = 0; y < smooth.rows; ++y) {
-        const std::int16_t* enters = rowAt(y + reach);
-        const std::int16_t* leaves = rowAt(y - reach - 1);
-        for (int x = 0; x < smooth.cols; ++x)
-            column[x] += enters[x] - leaves[x];
-        std::fill(padded.begin(), padded.begin() + reach, column[0]);
-        std::fill(padded.end() - reach, padded.end(), column[smooth.cols - 1]);
-        std::fill(sum.begin(), sum.end(), 0);
-        for (int k = -reach; k <= reach; ++k) {
+    forBands(smooth.rows, [&](int first, int last) {
+        // Sums over columns, kept from row to row.
+        std::vector<std::int32_t> padded(static_cast<std::size_t>(smooth.cols + 2 * reach), 0);
+        std::vector<std::int32_t> sum(static_cast<std::size_t>(smooth.cols));
+        std::int32_t* column = padded.data() + reach;
+        for (int k = -reach - 1; k < reach; ++k) {
             for (int x = 0; x < smooth.cols; ++x)
-                sum[static_cast<std::size_t>(x)] += column[x + k];
+                column[x] += rowAt(first + k)[x];
         }
-        const auto* here = smooth.ptr<std::int16_t>(y);
-        auto* to = result.ptr<std::int16_t>(y);
-        for (int x = 0; x < smooth.cols; ++x)
-            to[x] = static_cast<std::int16_t>(
-                here[x] -
-                static_cast<std::int32_t>(share * static_cast<float>(sum[static_cast<std::size_t>(x)]) + 0.5F));
-    }
+        for (int y = first; y < last; ++y) {
+            const std::int16_t* enters = rowAt(y + reach);
+            const std::int16_t* leaves = rowAt(y - reach - 1);
+            for (int x = 0; x < smooth.cols; ++x)
+                column[x] += enters[x] - leaves[x];
+            std::fill(padded.begin(), padded.begin() + reach, column[0]);
+            std::fill(padded.end() - reach, padded.end(), column[smooth.cols - 1]);
+            std::fill(sum.begin(), sum.end(), 0);
+            for (int k = -reach; k <= reach; ++k) {
+                for (int x = 0; x < smooth.cols; ++x)
+                    sum[static_cast<std::size_t>(x)] += column[x + k];
+            }
+            const auto* here = smooth.ptr<std::int16_t>(y);
+            auto* to = result.ptr<std::int16_t>(y);
+            for (int x = 0; x < smooth.cols; ++x)
+                to[x] = static_cast<std::int16_t>(
+                    here[x] -
+                    static_cast<std::int32_t>(share * static_cast<float>(sum[static_cast<std::size_t>(x)]) + 0.5F));
+        }
+    });
     return result;
 }
 

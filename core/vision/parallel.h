@@ -25,4 +25,10 @@ inline bool forEach(std::size_t count, const RunContext& context, const std::fun
     return true;
 }
 
+/// Calls `work` with bands of 0 … rows-1, from the first row to before the second, on all processors.
+inline void forBands(int rows, const std::function<void(int, int)>& work) {
+    cv::parallel_for_(
+        cv::Range(0, rows), [&](const cv::Range& range) { work(range.start, range.end); }, cv::getNumThreads());
+}
+
 }  // namespace skincal

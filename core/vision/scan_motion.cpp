@@ -57,11 +57,14 @@ void ScanMotion::add(std::span<const FramePlane> planes, const ImageNoise& noise
 }
 
 std::optional<double> ScanMotion::moved_px() const {
+    using Fit = tl::expected<SpotFit, SpotFitError>;
+    std::vector<std::pair<Fit, Fit>> fits(spots_.size());
+    (void)forEach(fits.size(), {}, [&](std::size_t i) {
+        fits[i] = {fitSpot(spots_[i].early.window(), options_), fitSpot(spots_[i].late.window(), options_)};
+    });
     std::vector<Vector2d> shifts;
     double variance = 0;
-    for (const Halves& spot : spots_) {
-        const auto early = fitSpot(spot.early.window(), options_);
-        const auto late = fitSpot(spot.late.window(), options_);
+    for (const auto& [early, late] : fits) {
         if (!early || !late)
             continue;
         shifts.push_back(late->centre - early->centre);

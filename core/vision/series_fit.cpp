@@ -101,13 +101,15 @@ bool SeriesFit::mayBeDisturbance(const Explanation& e) const {
     constexpr std::size_t kEnough = 3;
     constexpr std::size_t kNear = 3;
     const std::size_t perFrame = codebook_.coloured ? 3 : 1;
-    const std::vector<std::uint8_t> isCalm = calmPlanes(e);
+    std::vector<std::uint8_t> isCalm;  // once that is asked
     for (const std::size_t word : e.words) {
         std::vector<std::size_t> seen;
         std::copy_if(codebook_.lit[word].begin(), codebook_.lit[word].end(), std::back_inserter(seen),
                      [&](std::size_t plane) { return e.used[plane] != 0; });
         if (seen.size() >= kEnough)
             continue;
+        if (isCalm.empty())
+            isCalm = calmPlanes(e);
         for (const std::size_t plane : seen) {
             const std::size_t reach = kNear * perFrame;
             const std::size_t last = std::min(plane + reach, isCalm.size() - 1);

@@ -88,13 +88,15 @@ std::vector<SpotCandidate> maximaOf(const cv::Mat& change, bool isHalf, const Sp
 
 // sum += |a - b|
 void addDifference(const cv::Mat& a, const cv::Mat& b, cv::Mat& sum) {
-    for (int y = 0; y < sum.rows; ++y) {
-        const auto* pa = a.ptr<std::uint8_t>(y);
-        const auto* pb = b.ptr<std::uint8_t>(y);
-        auto* to = sum.ptr<std::uint16_t>(y);
-        for (int x = 0; x < sum.cols; ++x)
-            to[x] = static_cast<std::uint16_t>(to[x] + (std::max(pa[x], pb[x]) - std::min(pa[x], pb[x])));
-    }
+    forBands(sum.rows, [&](int first, int last) {
+        for (int y = first; y < last; ++y) {
+            const auto* pa = a.ptr<std::uint8_t>(y);
+            const auto* pb = b.ptr<std::uint8_t>(y);
+            auto* to = sum.ptr<std::uint16_t>(y);
+            for (int x = 0; x < sum.cols; ++x)
+                to[x] = static_cast<std::uint16_t>(to[x] + (std::max(pa[x], pb[x]) - std::min(pa[x], pb[x])));
+        }
+    });
 }
 
 }  // namespace
@@ -142,22 +144,24 @@ void SpotFinder::add(const FramePixels& frame, bool coloured) {
 void SpotFinder::noteStep(const cv::Mat& now, const cv::Mat& before, cv::Mat& lastStep) {
     if (lastStep.empty())
         lastStep = cv::Mat::zeros(now.size(), CV_16S);
-    for (int y = 0; y < now.rows; ++y) {
-        const auto* here = now.ptr<std::int16_t>(y);
-        const auto* there = before.ptr<std::int16_t>(y);
-        auto* last = lastStep.ptr<std::int16_t>(y);
-        auto* jump = jump_.ptr<std::int16_t>(y);
-        auto* flash = flash_.ptr<std::int16_t>(y);
-        for (int x = 0; x < now.cols; ++x) {
-            const auto step = static_cast<std::int16_t>(here[x] - there[x]);
-            const auto back = static_cast<std::int16_t>(-step);
-            const auto forth = static_cast<std::int16_t>(-last[x]);
-            jump[x] = std::max(jump[x], std::max(step, back));
-            // No step before this one is none that this one could take back.
-            flash[x] = std::max(flash[x], std::max(std::min(last[x], back), std::min(forth, step)));
-            last[x] = step;
+    forBands(now.rows, [&](int first, int end) {
+        for (int y = first; y < end; ++y) {
+            const auto* here = now.ptr<std::int16_t>(y);
+            const auto* there = before.ptr<std::int16_t>(y);
+            auto* last = lastStep.ptr<std::int16_t>(y);
+            auto* jump = jump_.ptr<std::int16_t>(y);
+            auto* flash = flash_.ptr<std::int16_t>(y);
+            for (int x = 0; x < now.cols; ++x) {
+                const auto step = static_cast<std::int16_t>(here[x] - there[x]);
+                const auto back = static_cast<std::int16_t>(-step);
+                const auto forth = static_cast<std::int16_t>(-last[x]);
+                jump[x] = std::max(jump[x], std::max(step, back));
+                // No step before this one is none that this one could take back.
+                flash[x] = std::max(flash[x], std::max(std::min(last[x], back), std::min(forth, step)));
+                last[x] = step;
+            }
         }
-    }
+    });
 }
 
 std::vector<SpotCandidate> SpotFinder::candidates(std::size_t most) const {

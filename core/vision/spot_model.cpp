@@ -1,6 +1,7 @@
 #include "core/vision/spot_model.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -14,20 +15,40 @@ constexpr Eigen::Index kMostAcross = 61;
 /// Pixels below each other, with which processors reckon at once.
 using Pair = Eigen::Array2d;
 
-/// exp(-u^2 / 2s^2) along an axis.
+using Line = std::array<double, kMostAcross + 1>;
+
+/// exp(-u^2 / 2s^2) at u = first, first + 1, …: each is the one before times what itself shrinks by the same factor
+/// each time. From the middle outwards, so that what gets too small to be a number comes last.
+void fillGaussian(double first, Eigen::Index count, double inverse, Line& line) {
+    // Where a fit has gone astray, the first is no number.
+    const double nearest = -std::round(first);
+    const auto middle =
+        static_cast<std::ptrdiff_t>(nearest > 0 ? std::min(nearest, static_cast<double>(count - 1)) : 0.0);
+    const double u = first + static_cast<double>(middle);
+    const double top = std::exp(-0.5 * u * u * inverse);
+    const double shrink = std::exp(-inverse);
+    double up = std::exp(-(u + 0.5) * inverse);
+    double down = std::exp((u - 0.5) * inverse);
+    line[static_cast<std::size_t>(middle)] = top;
+    double value = top;
+    for (std::ptrdiff_t i = middle + 1; i < count; ++i, up *= shrink)
+        line[static_cast<std::size_t>(i)] = value *= up;
+    value = top;
+    for (std::ptrdiff_t i = middle; i-- > 0; down *= shrink)
+        line[static_cast<std::size_t>(i)] = value *= down;
+}
+
+/// Core and halo along an axis.
 struct Profile {
-    std::array<double, kMostAcross + 1> away{};
-    std::array<double, kMostAcross + 1> core{};
-    std::array<double, kMostAcross + 1> halo{};
+    Line away{};
+    Line core{};
+    Line halo{};
 
     Profile(int first, Eigen::Index count, double centre, double inverse, double haloInverse) {
-        for (Eigen::Index i = 0; i < count; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            const double u = first + static_cast<double>(i) - centre;
-            away.at(at) = u;
-            core.at(at) = std::exp(-0.5 * u * u * inverse);
-            halo.at(at) = std::exp(-0.5 * u * u * haloInverse);
-        }
+        for (Eigen::Index i = 0; i < count; ++i)
+            away[static_cast<std::size_t>(i)] = first + static_cast<double>(i) - centre;
+        fillGaussian(first - centre, count, inverse, core);
+        fillGaussian(first - centre, count, haloInverse, halo);
     }
 };
 

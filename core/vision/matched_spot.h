@@ -20,8 +20,8 @@ struct MatchedSpot {
     SeriesMatch series;
     std::vector<AmplitudeMap> maps{};  ///< until they are fitted
     std::vector<tl::expected<SpotFit, SpotFitError>> fits{};
-    std::vector<double>
-        strays{};  ///< per fit, of a clipped spot's light what follows another word; infinite: no telling
+    /// Per fit, of a clipped spot's light what follows another word; infinite: no telling.
+    std::vector<double> strays{};
 };
 
 /// True where another LED's light in the spot is comparable with that of the match's word j: more than a quarter of it.

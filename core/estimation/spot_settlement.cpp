@@ -12,7 +12,7 @@
 namespace skincal {
 namespace {
 
-/// A module of a view with several spots.
+/// A module of a view with several spots, or a single one that may be a reflection.
 struct Case {
     LedInView led;
     const Undetected* undetected = nullptr;
@@ -27,7 +27,7 @@ std::vector<Case> openCases(const BodySolution& solution) {
     for (std::size_t v = 0; v < solution.measurements->views.size(); ++v) {
         for (const Undetected& undetected : solution.measurements->views[v].undetected) {
             const auto module = index.find(undetected.module);
-            if (undetected.spots.size() >= 2 && module != index.end() && !taken.contains({v, module->second}))
+            if (!undetected.spots.empty() && module != index.end() && !taken.contains({v, module->second}))
                 cases.push_back({{v, module->second}, &undetected});
         }
     }
@@ -58,7 +58,7 @@ struct Fit {
     double distance_px = 0;
 };
 
-/// @param spots  at least two.
+/// @param spots  at least one.
 Fit nearestSpot(const BodySolution& solution, const LedInView& led, const std::vector<SpotChoice>& spots,
                 const PixelPrediction& prediction) {
     Fit fit;
@@ -85,10 +85,12 @@ double worstSigma(const PixelPrediction& prediction) {
 }
 
 /// Why the fit decides nothing; empty where it does.
-Sentence whyOpen(const Fit& fit, const PixelPrediction& prediction, const SpotOptions& options) {
+Sentence whyOpen(const Fit& fit, bool isAlone, const PixelPrediction& prediction, const SpotOptions& options) {
     const double sigma = worstSigma(prediction);
-    if (!(sigma <= options.maxSigma_px))
+    if (!(sigma <= (isAlone ? options.maxSigmaAlone_px : options.maxSigma_px)))
         return Sentence::saying("the body tells where it must appear to {:.1f} px only", sigma);
+    if (!(fit.sigmas <= options.fits) && isAlone)
+        return Sentence::saying("the body has it {:.1f} px or {:.0f} sigma off", fit.distance_px, fit.sigmas);
     if (!(fit.sigmas <= options.fits))
         return Sentence::saying("none lies where the body has it, the nearest {:.1f} px or {:.0f} sigma off",
                                 fit.distance_px, fit.sigmas);
@@ -98,16 +100,22 @@ Sentence whyOpen(const Fit& fit, const PixelPrediction& prediction, const SpotOp
     return {};
 }
 
+Sentence whyTaken(const Undetected& undetected, const Fit& fit) {
+    if (undetected.spots.size() == 1)
+        return Sentence::saying("{}: it lies where the body has it, {:.1f} sigma off", undetected.reason, fit.sigmas);
+    return undetected.spots.size() > 2
+               ? Sentence::saying(
+                     "{}: this one lies where the body has it, {:.1f} sigma off, the others at least {:.0f}",
+                     undetected.reason, fit.sigmas, fit.next)
+               : Sentence::saying("{}: this one lies where the body has it, {:.1f} sigma off, the other {:.0f}",
+                                  undetected.reason, fit.sigmas, fit.next);
+}
+
 void take(BodySolution& solution, const Case& open, const Fit& fit) {
     const SpotChoice& spot = open.undetected->spots[fit.spot];
     BodyEstimate& estimate = solution.estimate;
     estimate.spots.push_back(
-        {open.led.view, open.led.module, solution.input.pixels.size(), spot.pixel,
-         open.undetected->spots.size() > 2
-             ? Sentence::saying("{}: this one lies where the body has it, {:.1f} sigma off, the others at least {:.0f}",
-                                open.undetected->reason, fit.sigmas, fit.next)
-             : Sentence::saying("{}: this one lies where the body has it, {:.1f} sigma off, the other {:.0f}",
-                                open.undetected->reason, fit.sigmas, fit.next)});
+        {open.led.view, open.led.module, solution.input.pixels.size(), spot.pixel, whyTaken(*open.undetected, fit)});
     solution.input.pixels.push_back({open.led.view, open.led.module, spot.pixel, spot.sigma_px});
     estimate.rejected.push_back(false);
     estimate.rejectedReason.emplace_back();
@@ -152,7 +160,7 @@ tl::expected<std::size_t, CalibrationError> settleSpots(BodySolution& solution, 
             continue;
         }
         const Fit fit = nearestSpot(solution, cases[i].led, cases[i].undetected->spots, *(*predictions)[i]);
-        const Sentence why = whyOpen(fit, *(*predictions)[i], options);
+        const Sentence why = whyOpen(fit, cases[i].undetected->spots.size() == 1, *(*predictions)[i], options);
         if (!why.empty()) {
             leaveOpen(cases[i], why);
             continue;
@@ -171,7 +179,7 @@ void dropRejectedSpots(BodySolution& solution) {
             continue;
         const std::size_t at = *verdict->pixel;
         const auto offset = static_cast<std::ptrdiff_t>(at);
-        verdict->reason = Sentence::saying("several spots blink its word; the one that was taken did not stand: {}",
+        verdict->reason = Sentence::saying("a spot that blinks its word was taken and did not stand: {}",
                                            estimate.rejectedReason[at]);
         verdict->pixel.reset();
         solution.input.pixels.erase(solution.input.pixels.begin() + offset);

@@ -10,12 +10,13 @@ struct SpotOptions {
     /// Standard deviations within which a spot lies where the body has the LED: by chance one LED of 3,000 does not.
     double fits = 4;
     double others = 10;              ///< standard deviations beyond which every other spot must lie
-    double maxSigma_px = 5;          ///< a body that tells the pixel less exactly (worst direction) does not choose
+    double maxSigma_px = 5;          ///< a body that tells the pixel less exactly (worst direction) does not choose …
+    double maxSigmaAlone_px = 2;     ///< … nor where there is a single spot, which nothing else speaks against
     double maxAngle = 85 * kDegree;  ///< between an LED's axis and the ray to the camera
     int maxRounds = 3;               ///< each choice makes the body more exact, and others possible
 
     [[nodiscard]] bool validate() const {
-        return fits > 0 && others > fits && maxSigma_px > 0 && maxAngle > 0 && maxRounds >= 0;
+        return fits > 0 && others > fits && maxSigma_px > 0 && maxSigmaAlone_px > 0 && maxAngle > 0 && maxRounds >= 0;
     }
 };
 
@@ -23,11 +24,12 @@ struct SpotOptions {
 /// other data have it. With prediction p of covariance P (predictPixels: module and view together, for a module that no
 /// picture shows from links and gravity alone), spot z_i of standard deviation s_i by the solution's weights:
 ///   d_i^2 = (z_i - p)^T (P + s_i^2 I)^-1 (z_i - p)
-/// The spot is taken whose d_i is within `fits` where all others are beyond `others`; the difference in -log L is then
-/// at least 42, three times what decides between places of a view (view_hypotheses). It counts from there on as a
-/// detection like any other. Where none fits, or more than one, where the body is not known well enough, where view or
-/// module have no pose or the view may stand elsewhere, none is taken. Spots already taken are not asked again.
-/// Every case has its verdict with the reason in `solution.estimate.spots`.
+/// A single spot, of which the decoder says that it may be a reflection, is taken likewise where the body tells the
+/// pixel to `maxSigmaAlone_px`. The spot is taken whose d_i is within `fits` where all others are beyond `others`; the
+/// difference in -log L is then at least 42, three times what decides between places of a view (view_hypotheses). It
+/// counts from there on as a detection like any other. Where none fits, or more than one, where the body is not known
+/// well enough, where view or module have no pose or the view may stand elsewhere, none is taken. Spots already taken
+/// are not asked again. Every case has its verdict with the reason in `solution.estimate.spots`.
 /// @return how many were taken: solve again, then dropRejectedSpots(). Fails with Cancelled; where the data do not fix
 /// all unknowns nothing is taken.
 /// Ref: for the gate, Bar-Shalom and Fortmann, Tracking and Data Association, 1988.

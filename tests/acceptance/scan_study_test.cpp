@@ -101,6 +101,18 @@ TEST(ScanStudy, AMirrorLeavesAChoiceThatHoldsTheLed) {
     EXPECT_GE(score.found + score.choices, score.visible * 995 / 1000);
 }
 
+TEST(ScanStudy, AMirrorThatShowsWhatTheCameraDoesNotSeePutsNobodyElsewhere) {
+    for (const ScanMethod method : {ScanMethod::Coded, ScanMethod::OneAtATime}) {
+        const ScanScore dull = scoreUpTo(Disturbance::Hidden, 0.3, 55, method);
+        EXPECT_EQ(dull.wrong, 0U);
+        EXPECT_GT(dull.visible, 90U);
+        EXPECT_GE(dull.foundShare(), 0.995);
+        const ScanScore bright = scoreUpTo(Disturbance::Hidden, 0.9, 55, method);
+        EXPECT_EQ(bright.wrong, 0U);
+        EXPECT_GE(bright.found + bright.choices, bright.visible * 995 / 1000);
+    }
+}
+
 TEST(ScanStudy, SomebodyWhoWalksPastIsNobodysLed) {
     const ScanScore score = scoreUpTo(Disturbance::Person, 1, 55, ScanMethod::OneAtATime);
     EXPECT_EQ(score.wrong, 0U) << "words of a single picture, which a flash can be taken for";

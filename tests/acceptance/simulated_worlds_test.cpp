@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/estimation/compare.h"
+#include "core/simulation/renderer.h"
 #include "core/study/paper_experiments.h"
 #include "core/workflow/simulated_recording.h"
 #include "tests/unit/formats/temporary_directory.h"
@@ -98,7 +99,7 @@ TEST(SimulatedWorlds, TheOperatorsRejectionsCount) {
     EXPECT_THAT(measurements->views[0].undetected.back().reason, testing::HasSubstr("a lamp"));
 }
 
-// A table that returns most of the light shows every LED above it twice: from the pictures alone the decoder can't tell
+// A table that returns much of the light shows every LED above it twice: from the pictures alone the decoder can't tell
 // which is which, the body can.
 TEST(SimulatedWorlds, TheBodyTellsLedsFromTheirReflections) {
     std::size_t chosen = 0;
@@ -149,6 +150,92 @@ TEST(SimulatedWorlds, TheBodyTellsLedsFromTheirReflections) {
     EXPECT_GT(doubtful, 20U);
     EXPECT_GT(chosen * 10, doubtful * 7) << chosen << " of " << doubtful;
 }
+
+/// A body before which something stands, or that has a far side, above a table in which LEDs show that are out of the
+/// camera's sight.
+World aboveATable(const char* scenario, double reflection, std::uint64_t seed) {
+    Scenario what = *findScenario(scenario);
+    what.views.scan = ScanKind::Coded;
+    what.disturbances.reflection = reflection;
+    what.disturbances.occluder = true;
+    return buildWorld(what, seed);
+}
+
+/// How many detections are none of the LED's: it is somewhere else in the picture, or out of sight.
+std::size_t countAstray(const World& world, const Measurements& measurements) {
+    const auto index = world.skin.indexById();
+    std::size_t astray = 0;
+    for (std::size_t v = 0; v < measurements.views.size(); ++v) {
+        for (const LedDetection& found : measurements.views[v].found) {
+            const auto real = visiblePixel(world, v, index.at(found.module), visibilityOfLight());
+            astray += real && (found.pixel - *real).norm() < 1 ? 0U : 1U;
+        }
+    }
+    return astray;
+}
+
+void expectNobodyAstray(const World& world, const BodyModel& body) {
+    const auto index = world.skin.indexById();
+    for (std::size_t v = 0; v < body.views.size(); ++v) {
+        for (const BodyObservation& o : body.views[v].observations) {
+            if (o.verdict != ObservationVerdict::Used)
+                continue;
+            const auto real = visiblePixel(world, v, index.at(o.module), visibilityOfLight());
+            ASSERT_TRUE(real) << "module " << o.module.value << " is out of sight";
+            EXPECT_LT((*o.pixel - *real).norm(), 1) << "module " << o.module.value << ": " << o.reason;
+        }
+    }
+    // In a bright mirror nearly all is doubt, and there may be no body.
+    if (const auto error = errorOf(world, body)) {
+        EXPECT_LT(error->positionRms, 1.5e-3);
+        EXPECT_LT(error->rotationRms, 1.5 * kDegree);
+    }
+}
+
+class AboveATable : public testing::TestWithParam<std::tuple<const char*, double>> {};
+
+// The only spot of a module may be its reflection. Where the picture shows others twice the decoder hands it on as a
+// doubt, which the body settles …
+TEST_P(AboveATable, WhatTheMirrorAloneShowsIsPutNowhereElse) {
+    std::size_t doubts = 0;
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        const World world = aboveATable(std::get<0>(GetParam()), std::get<1>(GetParam()), seed);
+        const Recording recording = recordingOf(world);
+        auto measurements = measure(recording, framesOf(world, recording));
+        ASSERT_TRUE(measurements);
+        EXPECT_EQ(countAstray(world, *measurements), 0U) << "seed " << seed;
+        const auto body = calibrateJoint(*measurements);
+        ASSERT_TRUE(body) << body.error().message();
+        expectNobodyAstray(world, *body);
+        const bool isDull = std::get<1>(GetParam()) < 0.35;
+        EXPECT_TRUE(!isDull || errorOf(world, *body));
+        if (!isDull)
+            continue;
+        // … and where it can't know of the mirror, the body rejects what it takes for the LED.
+        for (ViewDetections& view : measurements->views) {
+            for (const Undetected& undetected : view.undetected) {
+                if (undetected.spots.size() != 1)
+                    continue;
+                ++doubts;
+                view.found.push_back(
+                    {undetected.module, undetected.spots.front().pixel, undetected.spots.front().sigma_px});
+            }
+            std::erase_if(view.undetected, [](const Undetected& one) { return one.spots.size() == 1; });
+        }
+        const auto deceived = calibrateJoint(*measurements);
+        ASSERT_TRUE(deceived) << deceived.error().message();
+        expectNobodyAstray(world, *deceived);
+    }
+    EXPECT_TRUE(doubts > 5 || std::get<1>(GetParam()) >= 0.35);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, AboveATable,
+                         testing::Values(std::tuple("mirror", 0.3), std::tuple("mirror", 0.4),
+                                         std::tuple("cylinder", 0.3), std::tuple("cylinder", 0.8)),
+                         [](const auto& what) {
+                             return std::string(std::get<0>(what.param)) +
+                                    (std::get<1>(what.param) < 0.35 ? "Dull" : "Bright");
+                         });
 
 TEST(SimulatedWorlds, TheOperatorsRejectionLeavesNoSpotToChoose) {
     Scenario scenario = *findScenario("mirror");

@@ -193,6 +193,28 @@ TEST(SpotSettlement, AModuleThatNothingElseShowsIsFoundWhereLinksAndGravityHaveI
     EXPECT_GT(taken * 10, all * 7) << taken << " of " << all;
 }
 
+// The decoder hands on a single spot where it may be a reflection.
+TEST(SpotSettlement, ASingleSpotIsTakenWhereItLiesWhereTheBodyHasTheLed) {
+    const World world = scenarioWorld("cylinder", 3);
+    Measurements measurements = measurementsOf(world);
+    std::vector<Ambiguity> ambiguities;
+    for (std::size_t v = 0; v < measurements.views.size(); ++v) {
+        const Vector2d led = measurements.views[v].found.front().pixel;
+        ambiguities.push_back(doubt(measurements, v, 0, {mirrored(led, measurements.camera)}, v % 2 == 0));
+        // Of two, one is left: the LED or the reflection.
+        auto& spots = measurements.views[v].undetected.back().spots;
+        spots.erase(spots.begin(), spots.end() - 1);
+    }
+    const SolvedWorld solved(world, measurements);
+    for (const Ambiguity& ambiguity : ambiguities) {
+        const SpotVerdict* verdict = verdictOf(solved.solution, ambiguity.view, ambiguity.module);
+        ASSERT_NE(verdict, nullptr);
+        EXPECT_EQ(verdict->pixel.has_value(), ambiguity.led.has_value()) << verdict->reason;
+        EXPECT_THAT(verdict->reason, HasSubstr(ambiguity.led ? "it lies where the body has it" : "sigma off"));
+        EXPECT_THAT(verdict->reason, ::testing::Not(HasSubstr("inf")));
+    }
+}
+
 // What the spots add is as good as if the picture had been sure.
 TEST(SpotSettlement, TheBodyIsThatOfSureDetections) {
     const World world = scenarioWorld("cylinder", 2);

@@ -5,6 +5,9 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/simulation/mirror.h"
+#include "core/simulation/scene.h"
+
 namespace skincal {
 namespace {
 
@@ -190,6 +193,41 @@ TEST(Renderer, EachDisturbanceChangesThePictureAsItSays) {
     EXPECT_EQ(difference(bumped[0], calm[0]), 0) << "the first half is as it was";
     EXPECT_GT(difference(bumped[9], calm[9]), 0);
     EXPECT_GT(difference(mirror[0], calm[0]), 0);
+}
+
+TEST(Renderer, AMirrorShowsLedsThatTheCameraDoesNotSee) {
+    const World world = worldWith([](Scenario& s) {
+        s.disturbances.reflection = 0.5;
+        s.disturbances.occluder = true;
+        s.views.count = 8;
+        s.patches[1].T_r_s.linear() = Eigen::AngleAxisd(90 * kDegree, Vector3d::UnitX()).toRotationMatrix();
+    });
+    const double edge = mirrorEdge(world.scenario.camera);
+    std::size_t both = 0;
+    std::size_t alone = 0;
+    for (std::size_t v = 0; v < world.T_r_v.size(); ++v) {
+        const FrameRenderer renderer(world, v, 10);
+        const Mirror mirror(world, world.T_r_v[v]);
+        for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+            const LedSpot& image = renderer.images()[u];
+            if (image.peak <= 0)
+                continue;
+            const LedSpot& spot = renderer.spots()[u];
+            (spot.peak > 0 ? both : alone) += 1;
+            // As of an LED that faces its reflected camera and is as far from it.
+            const Vector3d led_r = world.T_r_u[u] * world.trueTemplate(u).led;
+            const Vector3d ray = mirror.image() - led_r;
+            EXPECT_GT(ray.normalized().dot(world.T_r_u[u].linear().col(2)), 0);
+            EXPECT_LT(image.peak, 0.5 * world.scenario.pictures.ledPeak * std::pow(0.6 / ray.norm(), 2) + 1e-9);
+            EXPECT_GT(image.pixel.y(), edge);
+            if (spot.peak > 0) {
+                EXPECT_NEAR(image.pixel.x(), spot.pixel.x(), 60);
+                EXPECT_NEAR(image.pixel.y() + spot.pixel.y(), 2 * edge, 120);
+            }
+        }
+    }
+    EXPECT_GT(both, 10U);
+    EXPECT_GT(alone, 5U);
 }
 
 cv::Mat ledLight(const FrameRenderer& renderer, const World& world, std::size_t frame) {

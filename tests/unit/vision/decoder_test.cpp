@@ -243,6 +243,28 @@ TEST_P(AnyScheme, StrongReflectionIsNotDecided) {
     EXPECT_EQ(u->cause, Undetected::Cause::Reflected);
 }
 
+TEST_P(AnyScheme, ASingleSpotAmongReflectionsMayBeOne) {
+    ScanPainter scan = scanOf(67, 26);
+    std::erase_if(scan.leds, [](const PaintedLed& led) { return led.pixel.y() > 108; });
+    ASSERT_GE(scan.leds.size(), 5U);
+    reframe(scan);
+    for (const PaintedLed& led : scan.leds)
+        scan.mirrored.push_back({led.module, {led.pixel.x(), 232 - led.pixel.y()}, 0.3 * led.peak});
+    ASSERT_EQ(expectNoneWrong(scan, decode(scan)), scan.leds.size());
+    // Something hides two of them from the camera, and not from the mirror; and a third one from the mirror.
+    scan.leds[0].peak = scan.leds[3].peak = scan.mirrored[1].peak = 0;
+    const ViewDetections view = decode(scan);
+    EXPECT_EQ(expectNoneWrong(scan, view), scan.leds.size() - 2);
+    for (const std::size_t hidden : {0U, 3U}) {
+        const Undetected* u = missing(view, scan.leds[hidden].module);
+        ASSERT_NE(u, nullptr);
+        EXPECT_EQ(u->cause, Undetected::Cause::Reflected);
+        EXPECT_THAT(u->reason, HasSubstr("reflected"));
+        ASSERT_EQ(u->spots.size(), 1U);
+        EXPECT_LT((u->spots.front().pixel - scan.mirrored[hidden].pixel).norm(), 0.5);
+    }
+}
+
 TEST_P(AnyScheme, HandsOnAllSpotsThatMayBeTheLed) {
     for (std::uint64_t seed = 63; seed <= 68; ++seed) {
         ScanPainter scan = scanOf(seed, 10);

@@ -44,6 +44,46 @@ TEST(ImageNoise, ChangesOfTheSceneDoNotCount) {
     EXPECT_NEAR(estimator.estimate().variance(100), 2.6, 0.6);
 }
 
+TEST(ImageNoise, DarkPixelsLoseNoneOfIt) {
+    // Half of what a sensor reads is below what is left of it at black.
+    for (const int level : {3, 5, 8, 10}) {
+        Random random(static_cast<std::uint64_t>(level), "dark");
+        ImageNoiseEstimator estimator;
+        for (int i = 0; i < 6; ++i) {
+            cv::Mat a = noisy(random, 0, 1.7, 0.02);
+            cv::Mat b = noisy(random, 0, 1.7, 0.02);
+            const cv::Rect lit(20, 20, 160, 120);
+            noisy(random, level, 1.7, 0.02)(lit).copyTo(a(lit));
+            noisy(random, level, 1.7, 0.02)(lit).copyTo(b(lit));
+            estimator.add(a, b);
+        }
+        EXPECT_GT(estimator.estimate().variance(level), 0.9) << level;
+        if (level >= 8) {
+            EXPECT_NEAR(estimator.estimate().variance(level), 1.8 + 0.02 * level, 0.25) << level;
+        }
+    }
+}
+
+TEST(ImageNoise, LedsThatBlinkInADarkRoomDoNotCount) {
+    Random random(4, "leds");
+    ImageNoiseEstimator estimator;
+    for (int i = 0; i < 6; ++i) {
+        cv::Mat a = noisy(random, 10, 1.7, 0);
+        cv::Mat b = noisy(random, 10, 1.7, 0);
+        // All that is bright of either blinks in two of three steps.
+        for (int x = 0; x < 300; x += 4)
+            for (int y = 4; y < 60; y += 8) {
+                const int change = i % 3 == 0 ? 0 : 20 + x / 10;
+                a.at<unsigned char>(y, x + 2) += static_cast<unsigned char>(30);
+                a.at<unsigned char>(y, x + 3) += static_cast<unsigned char>(25);
+                b.at<unsigned char>(y, x + 2) += static_cast<unsigned char>(30 + change);
+                b.at<unsigned char>(y, x + 3) += static_cast<unsigned char>(25 + change / 2);
+            }
+        estimator.add(a, b);
+    }
+    EXPECT_NEAR(estimator.estimate().variance(40), 1.8, 0.8);
+}
+
 TEST(ImageNoise, LampThatFlickersDoesNotCount) {
     Random random(3, "lamp");
     ImageNoiseEstimator estimator;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/random.h"
+#include "core/geometry/statistics.h"
 
 namespace skincal {
 namespace {
@@ -73,7 +75,8 @@ ModuleTemplate shrunk(ModuleTemplate type, double scale) {
 }
 
 /// As many patches as the modules need, side by side where the camera sees them.
-void layPatches(Scenario& scenario, const ScanCase& what) {
+/// @param widest  m between modules
+void layPatches(Scenario& scenario, const ScanCase& what, double widest) {
     const double metresPerPixel = what.distance / scenario.camera.fx;
     const double width = 0.86 * scenario.camera.width * metresPerPixel;
     const double height = 0.86 * scenario.camera.height * metresPerPixel;
@@ -87,8 +90,7 @@ void layPatches(Scenario& scenario, const ScanCase& what) {
     const double wide = 1.1 * std::sqrt(static_cast<double>(std::min(what.modules, kPatch))) + 1;
     double pitch =
         std::min({kPitch, width / static_cast<double>(columns) / wide, height / static_cast<double>(rows) / wide});
-    if (what.disturbance == Disturbance::Crowding)
-        pitch = std::min(pitch, what.strength * metresPerPixel);
+    pitch = std::min(pitch, widest);
     scenario.templates = {shrunk(hexagon, pitch / kPitch)};
     scenario.play.position *= pitch / kPitch;
     std::size_t left = what.modules;
@@ -118,14 +120,12 @@ Isometry3d cameraAbove(double distance, std::uint64_t seed) {
     return makeIsometry(R, distance * aside);
 }
 
-}  // namespace
-
-World scanWorld(const ScanCase& what, std::uint64_t seed) {
+World laidOut(const ScanCase& what, std::uint64_t seed, double widest) {
     Scenario scenario;
     scenario.name = "scan-study";
     scenario.camera = simulatedWebcam();
     scenario.sensors.poses = 0;
-    layPatches(scenario, what);
+    layPatches(scenario, what, widest);
     // Who scans from near by turns the exposure down, until few LEDs are clipped.
     constexpr double kBright = 0.6;
     scenario.pictures.ledPeak *= std::min(1.0, std::pow(what.distance / kBright, 2));
@@ -135,6 +135,34 @@ World scanWorld(const ScanCase& what, std::uint64_t seed) {
     const Isometry3d T_r_v = cameraAbove(what.distance, seed);
     world.T_r_v = {T_r_v, T_r_v};
     return world;
+}
+
+/// From an LED to the nearest other in the picture, the median.
+double spacing_px(const World& world) {
+    std::vector<Vector2d> pixels;
+    for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
+        const Vector3d led_v = world.T_r_v[kScanView].inverse() * (world.T_r_u[u] * world.trueTemplate(u).led);
+        if (const auto pixel = world.scenario.camera.project(led_v))
+            pixels.push_back(*pixel);
+    }
+    std::vector<double> nearest(pixels.size(), std::numeric_limits<double>::max());
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        for (std::size_t j = 0; j < pixels.size(); ++j) {
+            if (i != j)
+                nearest[i] = std::min(nearest[i], (pixels[i] - pixels[j]).norm());
+        }
+    }
+    return median(std::move(nearest));
+}
+
+}  // namespace
+
+World scanWorld(const ScanCase& what, std::uint64_t seed) {
+    if (what.disturbance != Disturbance::Crowding)
+        return laidOut(what, seed, std::numeric_limits<double>::max());
+    // LEDs sit off the middles of boards that are turned against each other: nearer than the boards.
+    const double widest = what.strength * what.distance / simulatedWebcam().fx;
+    return laidOut(what, seed, widest * what.strength / spacing_px(laidOut(what, seed, widest)));
 }
 
 }  // namespace skincal

@@ -40,7 +40,7 @@ struct Undetected {
     enum class Cause {
         OutOfSight,    ///< nothing in the picture blinks its word
         TooWeak,       ///< something may blink its word, but is too faint to be sure
-        Reflected,     ///< several spots blink its word
+        Reflected,     ///< several spots blink its word, or one that may be a reflection
         Alike,         ///< the word of another module fits as well, or is the same
         NotAnLed,      ///< what blinks its word is no round spot of its own: stray light, the light of others
         TooBright,     ///< its spot is clipped, and its centre can't be told
@@ -51,8 +51,9 @@ struct Undetected {
     ModuleId module;
     DetectionVerdict verdict = DetectionVerdict::NotFound;
     Sentence reason;
-    /// Where several spots blink its word alike: all of them, brightest first, at least two. The picture can't tell
-    /// which is the LED; what is known of the body may (see settleSpots). Empty where there is nothing to choose from.
+    /// Where several spots blink its word alike: all of them, brightest first. The picture can't tell which is the LED;
+    /// what is known of the body may (see settleSpots). A single one where it may be a reflection itself. Empty where
+    /// there is nothing to choose from.
     std::vector<SpotChoice> spots{};
     Cause cause = Cause::OutOfSight;
     std::optional<NearestSpot> nearest{};  ///< empty where nothing blinks like it

@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Expectation{Disturbance::Reflection, 0.3, 0.995}, Expectation{Disturbance::Screen, 250, 0.995},
                       Expectation{Disturbance::Mains50, 50, 0.995}, Expectation{Disturbance::Mains60, 100, 0.995},
                       Expectation{Disturbance::Sun, 1, 0.97}, Expectation{Disturbance::Person, 1, 0.995},
-                      Expectation{Disturbance::Exposure, 0.7, 0.995}, Expectation{Disturbance::Crowding, 8, 0.995}),
+                      Expectation{Disturbance::Exposure, 0.7, 0.995}, Expectation{Disturbance::Crowding, 4, 0.995}),
     [](const auto& what) { return std::string(name(what.param.disturbance)); });
 
 TEST(ScanStudy, AKnockedCameraPutsNobodyElsewhere) {
@@ -61,7 +61,7 @@ TEST(ScanStudy, AKnockedCameraPutsNobodyElsewhere) {
 }
 
 TEST(ScanStudy, FurtherLooksTellLedsApartThatOneCannot) {
-    for (const auto& [apart, atLeast] : {std::pair(6.0, 0.98), std::pair(4.0, 0.9), std::pair(3.0, 0.5)}) {
+    for (const auto& [apart, atLeast] : {std::pair(3.0, 0.98), std::pair(2.0, 0.8)}) {
         ScanScore once;
         ScanScore again;
         for (std::uint64_t seed = 1; seed <= 2; ++seed) {

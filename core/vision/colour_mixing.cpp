@@ -38,9 +38,12 @@ std::optional<Primary> primaryIn(std::span<const FrameInfo> frames, const std::a
     return best;
 }
 
-/// Light of the three pictures summed over the pixels in which all of them have some, a column per colour.
+/// Light of the three pictures summed over the pixels in which all of them have some, a column per colour; zero where
+/// those are too few.
 Eigen::Matrix3d lightOf(const std::array<cv::Mat, 3>& bright, const std::array<cv::Mat, 3>& dark) {
-    constexpr int kLeast = 15;  // grey levels, above noise and its neighbours' halos
+    constexpr int kLeast = 15;   // grey levels, above noise and its neighbours' halos
+    constexpr int kFewest = 30;  // pixels
+    int pixels = 0;
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (int y = 0; y < bright[0].rows; ++y) {
         for (int x = 0; x < bright[0].cols; ++x) {
@@ -55,22 +58,27 @@ Eigen::Matrix3d lightOf(const std::array<cv::Mat, 3>& bright, const std::array<c
                 }
                 counts = counts && here.col(colour).maxCoeff() >= kLeast;
             }
-            if (counts)
+            if (counts) {
                 sum += here;
+                ++pixels;
+            }
         }
     }
-    return sum;
+    return pixels >= kFewest ? sum : Eigen::Matrix3d::Zero();
 }
 
-/// Scaled so that colours keep their brightness on the whole; nothing where they can't be told apart.
+/// Scaled so that no light becomes clipped that was not; nothing where colours can't be told apart.
 std::optional<Eigen::Matrix3d> mixingOf(const Eigen::Matrix3d& light) {
     if (light.diagonal().minCoeff() <= 0)
         return std::nullopt;
-    const Eigen::Matrix3d M = light / std::cbrt(light.diagonal().prod());
+    Eigen::Matrix3d M = light / std::cbrt(light.diagonal().prod());
     constexpr double kWorst = 8;  // by which noise would grow
     const Eigen::FullPivLU<Eigen::Matrix3d> factor(M);
     if (!factor.isInvertible() || factor.inverse().rowwise().norm().maxCoeff() > kWorst)
         return std::nullopt;
+    const double brightest = factor.inverse().cwiseMax(0).rowwise().sum().maxCoeff();
+    constexpr double kRoom = (kClipped - ColourMixing::kGround) / kClipped;
+    M *= std::max(1.0, brightest / kRoom);
     return M;
 }
 

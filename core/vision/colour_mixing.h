@@ -25,8 +25,9 @@ class ColourMixing {
     [[nodiscard]] static tl::expected<std::optional<ColourMixing>, std::string> measured(
         std::span<const FrameInfo> frames, const FrameLoader& load);
 
-    /// 8-bit BGR to 8-bit BGR; dark ground becomes kGround.
+    /// 8-bit BGR to 8-bit BGR; dark ground becomes kGround. Pictures of another size or type are returned as they are.
     [[nodiscard]] cv::Mat unmixed(const cv::Mat& picture) const;
+    /// M, a column per colour, blue, green, red, up to a factor: what is not clipped must not become so.
     [[nodiscard]] const Eigen::Matrix3d& matrix() const { return M_; }
 
     static constexpr double kGround = 32;  ///< grey levels: the room may grow darker

@@ -16,14 +16,21 @@ namespace {
 
 ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, const std::vector<MatchedSpot>& matches,
                       const std::vector<Sighting>& sightings, std::optional<double> moved,
-                      const DecoderOptions& options, Verdicts& verdicts) {
+                      const DecoderOptions& options, std::vector<MirroredPair> mirrored, Verdicts& verdicts) {
     ViewDetections result;
     result.moved_px = moved;
     const bool spoilt = moved.value_or(0) > options.maxMotion_px;
     std::vector<std::size_t> sharing(modules.size(), 0);
     for (const std::size_t first : scan.codebook.representative)
         ++sharing[first];
-    const MirrorSide mirror(sightings, options.sameSpot_px);
+    std::vector<std::uint8_t> isAlone(modules.size());
+    for (std::size_t u = 0; u < modules.size(); ++u)
+        isAlone[u] = sharing[scan.codebook.representative[u]] == 1 ? 1 : 0;
+    const std::vector<MirroredPair> pairs = mirroredPairs(sightings, isAlone, options.sameSpot_px);
+    mirrored.insert(mirrored.end(), pairs.begin(), pairs.end());
+    const MirrorSide mirror(mirrored);
+    // Beyond a mirror LEDs may be far brighter than where the camera sees them; glints never are.
+    constexpr double kGlint = 0.02;
     for (std::size_t u = 0; u < modules.size(); ++u) {
         const auto spots = std::equal_range(sightings.begin(), sightings.end(), Sighting{u, {}},
                                             [](const Sighting& a, const Sighting& b) { return a.module < b.module; });
@@ -48,7 +55,7 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
         } else if (spots.first != spots.second) {
             const bool isDoubtful = mirror.mayReflect(spots.first->fit.centre);
             const std::vector<Sighting> distinct =
-                distinctSpots({spots.first, spots.second}, isDoubtful ? 0 : 1 / options.reflectionRatio, options);
+                distinctSpots({spots.first, spots.second}, isDoubtful ? kGlint : 1 / options.reflectionRatio, options);
             if (distinct.size() == 1 && !isDoubtful) {
                 const SpotFit& fit = distinct[0].fit;
                 result.found.push_back({modules[u], fit.centre, std::hypot(fit.sigma_px, 0.5 * moved.value_or(0))});
@@ -57,10 +64,14 @@ ViewDetections decide(std::span<const ModuleId> modules, const SpotScan& scan, c
             }
             Undetected several = undecided(distinct, options);
             several.nearest = nearestSpot(scan, matches[distinct.front().match], u);
+            several.nearest->pixel = distinct.front().fit.centre;
+            for (std::size_t k = 0; k < several.spots.size(); ++k)
+                several.spots[k].reading = readingOf(scan, matches[distinct[k].match], u);
             verdicts.replace(u, std::move(several));
         }
         result.undetected.push_back(verdicts.take(u, modules[u]));
     }
+    result.mirrored = std::move(mirrored);
     using Cause = Undetected::Cause;
     result.unexplained =
         verdicts.unexplained() + static_cast<std::size_t>(std::count_if(
@@ -78,9 +89,10 @@ FrameLoader unmixing(const ColourMixing& mixing, const FrameLoader& load) {
     };
 }
 
+/// @param mirrored  in the looks before it
 tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> modules, std::span<const FrameInfo> frames,
-                                                   const FrameLoader& load, const DecoderOptions& options,
-                                                   const RunContext& context) {
+                                                   const FrameLoader& load, std::vector<MirroredPair> mirrored,
+                                                   const DecoderOptions& options, const RunContext& context) {
     const auto mixing = ColourMixing::measured(frames, load);
     if (!mixing)
         return tl::unexpected(ScanError{Sentence::verbatim(mixing.error()), false});
@@ -96,13 +108,15 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
     // Who stops in front of a part of the skin hides it as suddenly as a knock does; the rest has not moved then.
     if (!moved_px || *moved_px > 0)
         moved_px = std::max(moved_px, knocked_px(sightings, matches));
-    ViewDetections result = decide(modules, scan, matches, sightings, moved_px, options, verdicts);
+    ViewDetections result = decide(modules, scan, matches, sightings, moved_px, options, std::move(mirrored), verdicts);
     result.look = frames.empty() ? 0 : frames.front().look;
     for (WordReading& reading : result.readings)
         reading.look = result.look;
     for (Undetected& undetected : result.undetected) {
         if (undetected.nearest)
             undetected.nearest->reading.look = result.look;
+        for (SpotChoice& spot : undetected.spots)
+            spot.reading.look = result.look;
     }
     context.report(Sentence::saying("measuring spots"), 1);
     return result;
@@ -136,7 +150,7 @@ tl::expected<ViewDetections, ScanError> decodeView(std::string name, std::span<c
         throw std::logic_error("DecoderOptions out of range");
     const std::vector<std::size_t> beginnings = beginningsOfLooks(frames);
     const std::size_t end = beginnings.size() > 1 ? beginnings[1] : frames.size();
-    auto view = decodeLook(modules, frames.first(end), load, options, context);
+    auto view = decodeLook(modules, frames.first(end), load, {}, options, context);
     if (!view)
         return view;
     view->name = std::move(name);
@@ -157,7 +171,8 @@ tl::expected<ViewDetections, ScanError> decodeFurther(ViewDetections view, std::
         const auto look = rest.first(beginnings.size() > 1 ? beginnings[1] : rest.size());
         if (const auto words = litWords(modules, look); !words)
             return tl::unexpected(ScanError{words.error(), false});
-        const auto further = decodeLook(modulesLitIn(look), look, from(first, load), options, context);
+        // A look at a few may show too few twice to tell of a mirror that those before it showed.
+        const auto further = decodeLook(modulesLitIn(look), look, from(first, load), view.mirrored, options, context);
         if (!further)
             return further;
         (void)addLook(view, *further, {options.maxMotion_px, options.sameSpot_px});

@@ -47,15 +47,16 @@ struct DecoderOptions {
 ///   Ambiguous  another module has the same word; another word fits its spot as well; two spots of similar strength
 ///              blink its word (a reflection less than `reflectionRatio` weaker): these are handed on as
 ///              Undetected::spots, at most `maxSpots` of them; where there are more, none is. So is the only spot of a
-///              module where the picture shows others reflected (MirrorSide): a mirror also shows modules that are out
-///              of the camera's sight. Where it shows those alone, three modules of which are not seen twice, a picture
-///              can't tell, and they are found: where they are not. settleSpots decides of the former by the body, and
-///              what rejects observations that no body explains does of the latter
+///              module where the picture, or that of an earlier look, shows others reflected (MirrorSide): a mirror
+///              also shows modules that are out of the camera's sight, and there `reflectionRatio` does not count.
+///              Where it shows those alone, three modules of which are not seen twice, a picture can't tell, and they
+///              are found: where they are not. settleSpots decides of the former by the body, and what rejects
+///              observations that no body explains does of the latter
 /// A spot shared by two LEDs is separated where both centres can be fitted, else neither is reported. Where the camera
 /// moved a little, half of that is part of every standard deviation: when it moved is not known.
 /// @param modules  all modules of the skin; a frame that lights any other is an error
 /// @param frames   in the order in which they were taken
-/// @param load     called for each frame up to three times
+/// @param load     called for each frame three times at most, and a few times more where LEDs shine in colours
 /// Fails with a sentence on a loader error (passed on), frames of different sizes, lit sets that make no sense,
 /// pictures that show what was lit before them (picturesLate), and "cancelled". Throws std::logic_error on invalid
 /// options.

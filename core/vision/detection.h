@@ -21,14 +21,24 @@ struct LedDetection {
 /// What became of a module in a view's picture.
 enum class DetectionVerdict { Found, NotFound, Ambiguous };
 
-/// One of several spots that blink the word of one module: the LED or a reflection of it.
+/// A spot that blinks the word of a module and may be its LED or a reflection of it.
 struct SpotChoice {
     Vector2d pixel = Vector2d::Zero();  ///< raw (distorted)
     double sigma_px = 0.1;              ///< per axis
     double strength = 1;                ///< its light over that of the brightest of them, 0 … 1
+    WordReading reading{};              ///< where it was decoded from pictures
 };
 
-/// The spot that speaks most for a module that was not found.
+/// The two brightest spots of a module that is seen twice, the brighter one first: a mirror, if there is one, has the
+/// LED there and its reflection here.
+struct MirroredPair {
+    Vector2d led = Vector2d::Zero();         ///< raw (distorted)
+    Vector2d reflection = Vector2d::Zero();  ///< likewise
+    double strength = 1;                     ///< light of the second over that of the first
+};
+
+/// The spot that came nearest to being the LED of a module that was not found: the brightest of those that were refused
+/// for the same verdict.
 struct NearestSpot {
     Vector2d pixel = Vector2d::Zero();  ///< raw (distorted)
     WordReading reading{};
@@ -56,7 +66,7 @@ struct Undetected {
     /// there is nothing to choose from.
     std::vector<SpotChoice> spots{};
     Cause cause = Cause::OutOfSight;
-    std::optional<NearestSpot> nearest{};  ///< empty where nothing blinks like it
+    std::optional<NearestSpot> nearest{};  ///< empty where nothing blinks like it, or nothing can
 };
 
 /// Everything the picture of one view yields.
@@ -70,6 +80,7 @@ struct ViewDetections {
     /// something else. Of the last look, where there were several.
     std::size_t unexplained = 0;
     std::size_t look = 0;  ///< the first look that counts: its camera's are the pixels of all that is found
+    std::vector<MirroredPair> mirrored{};  ///< of all looks
 };
 
 }  // namespace skincal

@@ -26,8 +26,8 @@ struct FrameInfo {
     std::size_t look = 0;  ///< which scan of the view it belongs to, rising: see FurtherLooks
 };
 
-/// Loads frame k of a view as 8-bit BGR or grey; the decoder asks for frames in order and may ask for one twice, so
-/// that no view has to fit into memory. The error is a sentence that names the file.
+/// Loads frame k of a view as 8-bit BGR or grey; the decoder asks for frames in order and may ask for one several
+/// times, so that no view has to fit into memory. The error is a sentence that names the file.
 using FrameLoader = std::function<tl::expected<cv::Mat, std::string>(std::size_t frame)>;
 
 }  // namespace skincal

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/geometry/random.h"
+#include "core/vision/looks.h"
 
 namespace skincal {
 namespace {
@@ -82,6 +83,9 @@ std::optional<LitSets> FurtherLooks::next(const ViewDetections& view) {
         waiting_.clear();
         return std::nullopt;
     }
+    // Nor would a look be believed that none that was found before can tell the place of.
+    if (view.found.empty() && hasChoices(view))
+        return std::nullopt;
     std::vector<ModuleId> wanted = std::exchange(wanted_, {});
     if (looks_ == 0) {
         const std::size_t all = missing.size() + view.found.size();

@@ -15,16 +15,14 @@ struct ImageNoise {
 };
 
 /// Gathers differences of two pictures of the same scene, less those of the neighbouring pixel (a lamp that flickers
-/// changes both alike), sorted by brightness. The few pixels that truly changed
-/// (LEDs, people) do not count, unless most did: then that is a lamp. The spread is read off the central 68 % of each
-/// brightness class.
+/// changes both alike), sorted by brightness. The few pixels that truly changed (LEDs, people) do not count, unless
+/// most did: then that is a lamp. The spread is read off the central 68 % of each brightness class.
 class ImageNoiseEstimator {
   public:
     /// a, b: 8-bit grey of equal size, taken one after the other. Looks at one pixel in 32.
     void add(const cv::Mat& a, const cv::Mat& b);
     /// Weighted straight line through the classes; read >= 1/12 (quantisation), gain >= 0. With a single class the gain
-    /// is 0, with no data at all the default noise is returned, in
-    /// the dark with a webcam's gain.
+    /// is 0, with no data at all the default noise is returned, in the dark with a webcam's gain.
     [[nodiscard]] ImageNoise estimate() const;
 
   private:

@@ -94,10 +94,18 @@ std::vector<ModuleId> modulesLitIn(std::span<const FrameInfo> look) {
     return {modules.begin(), modules.end()};
 }
 
+bool hasChoices(const ViewDetections& view) {
+    return std::any_of(view.undetected.begin(), view.undetected.end(),
+                       [](const Undetected& one) { return !one.spots.empty(); });
+}
+
 bool addLook(ViewDetections& view, const ViewDetections& further, const LookOptions& options) {
     if (!options.validate())
         throw std::logic_error("LookOptions out of range");
     const bool isFirst = view.found.empty();
+    // Pixels of two cameras are none of one view.
+    if (isFirst && hasChoices(view))
+        return false;
     const std::optional<Vector2d> shift = motionSince(view, further);
     const double moved = shift ? shift->norm() : 0;
     const double movedAtAll = std::max(moved, further.moved_px.value_or(0));
@@ -110,6 +118,7 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
     }
     if (movedAtAll > options.maxMotion_px || (!isFirst && !shift))
         return false;
+    view.mirrored = further.mirrored;
     const std::vector<LedDetection> before = view.found;
     const Nearby spots(before, options.sameSpot_px);
     PlaceOf places = placesIn(view.undetected);

@@ -71,7 +71,7 @@ class SeriesFit {
     void judge(const Solution& solution, bool settled, Explanation& e) const;
     void setResiduals(const Solution& solution);
     [[nodiscard]] double costOfNothing() const;
-    /// The ambient's is for camera noise; here LEDs that shine unevenly are noise, too.
+    /// Ambient::ridge is for camera noise; here LEDs that shine unevenly are noise, too.
     [[nodiscard]] double ridge() const { return ambient_.ridge * std::pow(sigma_ / cameraSigma_, 2); }
     [[nodiscard]] bool hasAmbient() const { return ambient_.light.size() > 0; }
     [[nodiscard]] std::vector<std::uint8_t> calmPlanes(const Explanation& e) const;

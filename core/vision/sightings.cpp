@@ -135,6 +135,22 @@ std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, double fain
     return best;
 }
 
+std::vector<MirroredPair> mirroredPairs(std::span<const Sighting> sightings, std::span<const std::uint8_t> counts,
+                                        double sameSpot_px) {
+    std::vector<MirroredPair> pairs;
+    for (auto first = sightings.begin(); first != sightings.end();) {
+        const auto last =
+            std::find_if(first, sightings.end(), [&](const Sighting& other) { return other.module != first->module; });
+        const SpotFit& led = first->fit;
+        const auto second = std::find_if(
+            first, last, [&](const Sighting& other) { return (other.fit.centre - led.centre).norm() > sameSpot_px; });
+        if (second != last && counts[first->module] != 0)
+            pairs.push_back({led.centre, second->fit.centre, second->fit.flux() / led.flux()});
+        first = last;
+    }
+    return pairs;
+}
+
 Undetected undecided(const std::vector<Sighting>& spots, const DecoderOptions& options) {
     Undetected result{{}, DetectionVerdict::Ambiguous, {}, {}, Undetected::Cause::Reflected};
     result.reason = spots.size() == 1   ? Sentence::saying("its only spot lies where others are reflected")

@@ -28,6 +28,12 @@ struct Sighting {
 [[nodiscard]] std::vector<Sighting> distinctSpots(std::span<const Sighting> finds, double faintest,
                                                   const DecoderOptions& options);
 
+/// The modules that are seen twice.
+/// @param sightings  by module and brightest first
+/// @param counts     per module, 0: it shares its word with others, and may be seen twice for that
+[[nodiscard]] std::vector<MirroredPair> mirroredPairs(std::span<const Sighting> sightings,
+                                                      std::span<const std::uint8_t> counts, double sameSpot_px);
+
 /// Why none of several spots was taken, nor a single one that may be a reflection (MirrorSide), with the spots for
 /// whoever knows more than the picture.
 [[nodiscard]] Undetected undecided(const std::vector<Sighting>& spots, const DecoderOptions& options);

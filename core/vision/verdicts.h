@@ -19,11 +19,12 @@ class Verdicts {
   public:
     explicit Verdicts(std::size_t modules) : reasons_(modules) {}
 
-    /// The first reason stays, but what nearly was a find says more than what never was.
+    /// What nearly was a find says more than what never was; of spots that were refused alike, the brightest.
     void note(std::size_t module, DetectionVerdict verdict, Undetected::Cause cause, Sentence reason,
               std::optional<NearestSpot> nearest = std::nullopt) {
         auto& known = reasons_[module];
-        const bool better = verdict == DetectionVerdict::Ambiguous && known.verdict == DetectionVerdict::NotFound;
+        const bool isBrighter = nearest && (!known.nearest || nearest->reading.snr > known.nearest->reading.snr);
+        const bool better = verdict == known.verdict ? isBrighter : verdict == DetectionVerdict::Ambiguous;
         if (known.reason.empty() || better)
             known = {{}, verdict, std::move(reason), {}, cause, std::move(nearest)};
     }

@@ -43,8 +43,11 @@ QString wordsBelowEachOther(const WordReading& reading) {
     return text;
 }
 
-QString strengthOf(const WordReading& reading) {
+/// @param isFound  else the lead is not what it lacks
+QString strengthOf(const WordReading& reading, bool isFound) {
     const QString light = SpotCard::tr("Light %1 times its noise").arg(reading.snr, 0, 'f', 0);
+    if (!isFound && reading.margin > 0)
+        return SpotCard::tr("%1; ahead of other words by %2").arg(light).arg(reading.margin, 0, 'f', 0);
     return reading.margin > 0 ? SpotCard::tr("%1; ahead of whatever else it could be by %2 (20 is enough)")
                                     .arg(light)
                                     .arg(reading.margin, 0, 'f', 0)
@@ -79,7 +82,8 @@ QString wordsOf(const DetectionRow& detection, const OverlayModule* byBody,
     if (!detection.pixel && byBody != nullptr)
         text += QLatin1String("\n") + placeWords(*byBody);
     if (detection.reading) {
-        text += QLatin1String("\n") + strengthOf(*detection.reading) + wordsBelowEachOther(*detection.reading);
+        text += QLatin1String("\n") + strengthOf(*detection.reading, detection.pixel.has_value()) +
+                wordsBelowEachOther(*detection.reading);
     }
     return text;
 }

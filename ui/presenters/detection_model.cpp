@@ -81,15 +81,15 @@ std::map<ModuleId, DetectionRow> decodedRows(const ScannedView& view, const Skin
     return rows;
 }
 
-/// How well the centre of one of several spots is known.
-std::optional<double> sigmaOfSpot(const ScannedView& view, ModuleId module, const Vector2d& pixel) {
+/// The one that the body settled on; null where it has no such spot.
+const SpotChoice* choiceAt(const ScannedView& view, ModuleId module, const Vector2d& pixel) {
     for (const Undetected& undetected : view.decoded.undetected) {
         for (const SpotChoice& spot : undetected.spots) {
             if (undetected.module == module && spot.pixel == pixel)
-                return spot.sigma_px;
+                return &spot;
         }
     }
-    return std::nullopt;
+    return nullptr;
 }
 
 void addResiduals(const BodyView& view, const ScannedView& scanned, std::map<ModuleId, DetectionRow>& rows) {
@@ -106,7 +106,10 @@ void addResiduals(const BodyView& view, const ScannedView& scanned, std::map<Mod
         if (isOpen(row.state) && observation.verdict == ObservationVerdict::Used) {
             row.state = State::Used;
             row.pixel = observation.pixel;
-            row.sigma_px = sigmaOfSpot(scanned, observation.module, *observation.pixel);
+            if (const SpotChoice* choice = choiceAt(scanned, observation.module, *observation.pixel)) {
+                row.sigma_px = choice->sigma_px;
+                row.reading = choice->reading.planes > 0 ? std::optional(choice->reading) : std::nullopt;
+            }
         }
         if (observation.verdict == ObservationVerdict::Rejected) {
             row.state = State::SetAside;
@@ -154,8 +157,9 @@ QString meaningOf(DetectionRow::State state) {
             return DetectionModel::tr("You said that this is not its LED.");
         case State::Reflected:
             return DetectionModel::tr(
-                "Several spots blink its word: the LED and its mirror images. Cover what mirrors, or look from "
-                "another side.");
+                "Several spots blink its word, the LED and its mirror images, or a single one does where a mirror "
+                "shows "
+                "others. Cover what mirrors, or look from another side.");
         case State::Ambiguous:
             return DetectionModel::tr("A spot fits it no better than another module. Another scan has other words.");
         case State::TooWeak:

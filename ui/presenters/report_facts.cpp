@@ -37,32 +37,44 @@ QByteArray stripOf(const SpotEvidence& evidence) {
     return png;
 }
 
+ReportedDetection reportedOf(const Undetected& undetected, bool isRejected) {
+    ReportedDetection reported;
+    reported.module = undetected.module;
+    reported.isRejected = isRejected;
+    reported.whyNot = said(undetected.reason);
+    reported.choices = undetected.spots;
+    if (undetected.nearest) {
+        reported.pixel = undetected.nearest->pixel;
+        reported.reading = undetected.nearest->reading;
+    }
+    if (!undetected.spots.empty()) {
+        reported.pixel = undetected.spots.front().pixel;
+        reported.sigma_px = undetected.spots.front().sigma_px;
+    }
+    return reported;
+}
+
 ReportedScan scanOf(const ScannedView& view, const Decisions& decisions) {
     ReportedScan scan;
     scan.view = view.name;
     scan.pictures = view.frames.size();
+    const auto isRejected = [&](ModuleId module) {
+        const auto decided = decisions.detections.find({view.name, module});
+        return decided != decisions.detections.end() && decided->second.verdict == "rejected";
+    };
     for (std::size_t i = 0; i < view.decoded.found.size(); ++i) {
         const LedDetection& found = view.decoded.found[i];
         ReportedDetection detection{found.module, found.pixel, found.sigma_px, {}, {}, false};
         if (i < view.decoded.readings.size())
             detection.reading = view.decoded.readings[i];
-        const auto decided = decisions.detections.find({view.name, found.module});
-        detection.isRejected = decided != decisions.detections.end() && decided->second.verdict == "rejected";
+        detection.isRejected = isRejected(found.module);
         scan.detections.push_back(std::move(detection));
     }
     for (const Undetected& undetected : view.decoded.undetected) {
-        if (!undetected.nearest) {
+        if (!undetected.nearest && undetected.cause == Undetected::Cause::OutOfSight)
             scan.unseen.push_back(undetected.module);
-            continue;
-        }
-        const double sigma_px = undetected.spots.empty() ? 0 : undetected.spots.front().sigma_px;
-        scan.detections.push_back({undetected.module,
-                                   undetected.nearest->pixel,
-                                   sigma_px,
-                                   undetected.nearest->reading,
-                                   {},
-                                   false,
-                                   said(undetected.reason)});
+        else
+            scan.detections.push_back(reportedOf(undetected, isRejected(undetected.module)));
     }
     std::sort(scan.unseen.begin(), scan.unseen.end());
     std::sort(scan.detections.begin(), scan.detections.end(),
@@ -70,19 +82,20 @@ ReportedScan scanOf(const ScannedView& view, const Decisions& decisions) {
     return scan;
 }
 
-/// In the order of their leads, the least first.
+/// In the order in which their crops are worth most: of a kind, those whose lead is least first.
 std::vector<std::pair<std::size_t, std::size_t>> byLead(const std::vector<ReportedScan>& scans) {
     std::vector<std::pair<std::size_t, std::size_t>> order;
     for (std::size_t v = 0; v < scans.size(); ++v) {
         for (std::size_t i = 0; i < scans[v].detections.size(); ++i)
             order.emplace_back(v, i);
     }
-    const auto lead = [&](const std::pair<std::size_t, std::size_t>& at) {
+    // What somebody rejected is what will be asked about, and what was found counts.
+    const auto place = [&](const std::pair<std::size_t, std::size_t>& at) {
         const auto& detection = scans[at.first].detections[at.second];
-        // What somebody rejected is what will be asked about.
-        return detection.isRejected ? -1 : detection.reading ? detection.reading->margin : 0;
+        const int kind = detection.isRejected ? 0 : detection.whyNot.isEmpty() || !detection.choices.empty() ? 1 : 2;
+        return std::pair(kind, detection.reading ? detection.reading->margin : 0);
     };
-    std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return lead(a) < lead(b); });
+    std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
     return order;
 }
 
@@ -133,7 +146,9 @@ void addData(ReportFacts& facts, const Measured& measured, const Decisions& deci
         if (mostCrops == 0 || context.isCancelled())
             return;
         ReportedDetection& detection = facts.scans[v].detections[i];
-        if (const auto evidence = evidenceOf(*views[v], detection.module, detection.pixel, kCropRadius)) {
+        if (!detection.pixel)
+            continue;
+        if (const auto evidence = evidenceOf(*views[v], detection.module, *detection.pixel, kCropRadius)) {
             detection.crops = stripOf(*evidence);
             --mostCrops;
         }

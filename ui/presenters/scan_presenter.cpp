@@ -7,6 +7,11 @@
 
 namespace skincal {
 
+bool fitIntoMemory(std::size_t pictures, const cv::Mat& picture) {
+    constexpr std::size_t kMost = std::size_t{2} << 30U;  // bytes; some 2,300 grey pictures of 1280 x 720
+    return pictures * picture.total() * picture.elemSize() <= kMost;
+}
+
 ScanPresenter::ScanPresenter(Workbench& workbench, QObject* parent)
     : QObject(parent), workbench_(workbench), detections_(workbench), series_(workbench) {
     connect(&workbench, &Workbench::cameraChosen, this, &ScanPresenter::attachCamera);
@@ -45,11 +50,6 @@ QString ScanPresenter::obstacle() const {
         return tr("No camera is chosen.");
     if (!workbench_.session().decisions().camera)
         return tr("The camera's intrinsics are not known.");
-    // They are all kept, 0.9 MB each at 1280 x 720.
-    constexpr std::size_t kMostPictures = 2000;
-    if (picturesOfAScan_ > kMostPictures)
-        return tr("One at a time that is %n pictures, more than fit into the memory: scan by words.", nullptr,
-                  static_cast<int>(picturesOfAScan_));
     if (isWaitingForPicture())
         return tr("The camera gives no pictures yet.");
     const CameraModel& camera = *workbench_.session().decisions().camera;
@@ -59,6 +59,9 @@ QString ScanPresenter::obstacle() const {
             .arg(camera.height)
             .arg(newest_.image.cols)
             .arg(newest_.image.rows);
+    if (!fitIntoMemory(picturesOfAScan_, newest_.image))
+        return tr("One at a time that is %n pictures, more than fit into the memory: scan by words.", nullptr,
+                  static_cast<int>(picturesOfAScan_));
     return {};
 }
 

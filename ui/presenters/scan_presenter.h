@@ -13,6 +13,9 @@
 
 namespace skincal {
 
+/// A scan keeps all of its pictures.
+[[nodiscard]] bool fitIntoMemory(std::size_t pictures, const cv::Mat& picture);
+
 /// Scans views, and shows what was found in each.
 class ScanPresenter : public QObject {
     Q_OBJECT

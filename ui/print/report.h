@@ -14,19 +14,20 @@ namespace skincal {
 /// A spot that was taken for a module's LED, or came nearest to it, and why.
 struct ReportedDetection {
     ModuleId module;
-    Vector2d pixel = Vector2d::Zero();  ///< raw (distorted)
-    double sigma_px = 0;
+    std::optional<Vector2d> pixel{};       ///< raw (distorted); empty where nothing blinks like it
+    double sigma_px = 0;                   ///< 0 where its centre was not told
     std::optional<WordReading> reading{};  ///< where it was decoded from pictures
     QByteArray crops{};                    ///< PNG of the spot lit, dark and the difference; empty where there is none
     bool isRejected = false;               ///< by the operator
     QString whyNot{};                      ///< what spoke against it; empty where it was taken
+    std::vector<SpotChoice> choices{};     ///< of which it is the brightest, and the body may take another
 };
 
 struct ReportedScan {
     std::string view;
     std::size_t pictures = 0;
     std::vector<ReportedDetection> detections;
-    std::vector<ModuleId> unseen{};  ///< nothing blinks like them
+    std::vector<ModuleId> unseen{};  ///< out of sight
 };
 
 /// What a report says besides what the body itself knows.

@@ -1,5 +1,7 @@
 #include "ui/print/report_detections.h"
 
+#include <algorithm>
+
 #include "ui/print/html.h"
 #include "ui/texts/sentences.h"
 #include "ui/texts/word_lines.h"
@@ -52,28 +54,49 @@ QString unseenModules(const std::vector<ModuleId>& modules) {
         .arg(ReportText::tr("Out of sight, nothing blinks like them: %1").arg(names.join(ReportText::tr(", "))));
 }
 
+QString placeOf(const ReportedDetection& detection) {
+    if (!detection.pixel)
+        return ReportText::tr("–");
+    // Where no centre was told it is that of the brightest pixel.
+    const int digits = detection.sigma_px > 0 ? 2 : 0;
+    return ReportText::tr("%1, %2").arg(detection.pixel->x(), 0, 'f', digits).arg(detection.pixel->y(), 0, 'f', digits);
+}
+
+/// What is said of the brightest of several spots is not true of another that the body took.
+void takeChoice(ReportedDetection& detection, const BodyObservation& observation) {
+    const auto taken = std::find_if(detection.choices.begin(), detection.choices.end(), [&](const SpotChoice& choice) {
+        return observation.pixel && choice.pixel == *observation.pixel;
+    });
+    if (taken == detection.choices.end())
+        return;
+    if (taken != detection.choices.begin())
+        detection.crops.clear();
+    detection.pixel = taken->pixel;
+    detection.sigma_px = taken->sigma_px;
+    detection.reading = taken->reading.planes > 0 ? std::optional(taken->reading) : std::nullopt;
+}
+
 QString detections(const ReportedScan& scan, const BodyModel& body) {
     const auto observations = observationsOf(body, scan.view);
     QString rows;
-    for (const ReportedDetection& detection : scan.detections) {
+    for (ReportedDetection detection : scan.detections) {
         QString verdict = detection.isRejected ? ReportText::tr("rejected") : ReportText::tr("not used");
-        if (!detection.whyNot.isEmpty())
+        if (!detection.whyNot.isEmpty() && !detection.isRejected)
             verdict = ReportText::tr("not found: %1").arg(detection.whyNot.toHtmlEscaped());
         QString residual = ReportText::tr("–");
         if (const auto found = observations.find(detection.module); found != observations.end()) {
             const BodyObservation& observation = *found->second;
-            if (observation.verdict == ObservationVerdict::Used)
+            if (observation.verdict == ObservationVerdict::Used) {
                 verdict = ReportText::tr("used");
-            else if (!detection.isRejected && detection.whyNot.isEmpty() && !observation.reason.empty())
+                takeChoice(detection, observation);
+            } else if (!detection.isRejected && detection.whyNot.isEmpty() && !observation.reason.empty())
                 verdict = said(observation.reason).toHtmlEscaped();
             if (observation.residual)
                 residual = QString::number(observation.residual->norm(), 'f', 3);
         }
-        QStringList cells{
-            QString::number(detection.module.value),
-            ReportText::tr("%1, %2").arg(detection.pixel.x(), 0, 'f', 2).arg(detection.pixel.y(), 0, 'f', 2),
-            detection.sigma_px > 0 ? QString::number(detection.sigma_px, 'f', 3) : ReportText::tr("–"), residual,
-            verdict};
+        QStringList cells{QString::number(detection.module.value), placeOf(detection),
+                          detection.sigma_px > 0 ? QString::number(detection.sigma_px, 'f', 3) : ReportText::tr("–"),
+                          residual, verdict};
         if (const auto& reading = detection.reading) {
             cells << wordsOf(*reading) << QString::number(reading->snr, 'f', 1)
                   << QString::number(reading->margin, 'f', 0);
@@ -99,7 +122,8 @@ QString detectionsHtml(const BodyModel& body, const std::vector<ReportedScan>& s
     html += QStringLiteral("<p>%1</p>\n")
                 .arg(ReportText::tr(
                     "Every LED blinks a word of its own, 1 lit and 0 dark, picture by picture; a point stands where "
-                    "something disturbed it. SNR: light over noise in one picture. Lead: over whatever else the "
+                    "something disturbed it; where LEDs are lit one at a time, the pictures in which it shone. SNR: "
+                    "light over noise in one picture. Lead: over whatever else the "
                     "spot could be, −2 log likelihood. Spots of which the lead is least are shown."));
     for (const ReportedScan& scan : scans)
         html += detections(scan, body);

@@ -21,7 +21,7 @@ QString pictureOfPlane(const WordReading& reading, std::uint32_t plane) {
 
 /// The first few of them.
 QString picturesOf(const WordReading& reading, const std::vector<std::uint32_t>& planes) {
-    constexpr std::size_t kMost = 6;
+    constexpr std::size_t kMost = 9;
     QStringList pictures;
     for (std::size_t i = 0; i < std::min(kMost, planes.size()); ++i)
         pictures.push_back(pictureOfPlane(reading, planes[i]));
@@ -35,7 +35,7 @@ QString picturesOf(const WordReading& reading, const std::vector<std::uint32_t>&
 }  // namespace
 
 std::vector<WordLines> linesOf(const WordReading& reading, int width) {
-    constexpr std::size_t kFew = 6;
+    constexpr std::size_t kFew = 9;  // in colours: one in white, the three primaries, its own
     if (reading.planes > static_cast<std::size_t>(width) && reading.sent.size() <= kFew) {
         QString received = picturesOf(reading, reading.received);
         if (!reading.disturbed.empty())

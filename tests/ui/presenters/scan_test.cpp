@@ -167,6 +167,14 @@ TEST(ScanPresenter, LooksOnceWhereThatIsAskedOrNothingIsOpen) {
     EXPECT_LT(desk.session().measured().views.back().decoded.found.size(), visible) << "some are open";
 }
 
+TEST(ScanPresenter, NoMorePicturesAreTakenThanFitIntoTheMemory) {
+    const cv::Mat grey(720, 1280, CV_8UC1);
+    EXPECT_TRUE(fitIntoMemory(2003, grey)) << "1,000 modules one at a time";
+    EXPECT_FALSE(fitIntoMemory(20'003, grey));
+    EXPECT_FALSE(fitIntoMemory(2003, cv::Mat(720, 1280, CV_8UC3)));
+    EXPECT_FALSE(fitIntoMemory(2003, cv::Mat(2160, 3840, CV_8UC1)));
+}
+
 TEST(ScanPresenter, LightsOneAtATimeWhereThatIsAsked) {
     Desk desk;
     ASSERT_TRUE(desk.connectSkin() && desk.startCamera());

@@ -6,12 +6,13 @@ namespace skincal {
 namespace {
 
 TEST(WordLines, BitsStandBelowEachOther) {
-    const auto lines = linesOf(WordReading{14, false, {0, 3, 4, 9, 10, 11, 12}, {0, 4, 9, 10, 11, 12}, {3}}, 10);
+    const auto lines =
+        linesOf(WordReading{14, false, {0, 1, 2, 3, 4, 6, 7, 9, 10, 12}, {0, 1, 2, 4, 6, 7, 9, 10, 12}, {3}}, 10);
     ASSERT_EQ(lines.size(), 2U);
-    EXPECT_EQ(lines[0].sent, "1001100001");
-    EXPECT_EQ(lines[0].received, "100.100001");
-    EXPECT_EQ(lines[1].sent, "1110");
-    EXPECT_EQ(lines[1].received, "1110");
+    EXPECT_EQ(lines[0].sent, "1111101101");
+    EXPECT_EQ(lines[0].received, "111.101101");
+    EXPECT_EQ(lines[1].sent, "1010");
+    EXPECT_EQ(lines[1].received, "1010");
 }
 
 TEST(WordLines, OfOneLedAtATimePicturesAreNamed) {
@@ -24,7 +25,7 @@ TEST(WordLines, OfOneLedAtATimePicturesAreNamed) {
     WordReading flicker{4001, false, {130}};
     for (std::uint32_t plane = 0; plane < 900; plane += 9)
         flicker.received.push_back(plane);
-    EXPECT_EQ(linesOf(flicker, 64)[0].received, QStringLiteral("in picture 1, 10, 19, 28, 37, 46, …"));
+    EXPECT_EQ(linesOf(flicker, 64)[0].received, QStringLiteral("in picture 1, 10, 19, 28, 37, 46, 55, 64, 73, …"));
 }
 
 TEST(WordLines, OfColoursChannelsAreNamed) {

@@ -120,12 +120,8 @@ ReportFacts factsWithData(std::size_t detections) {
     buffer.open(QIODevice::WriteOnly);
     crops.save(&buffer, "PNG");
     for (std::size_t i = 0; i < detections; ++i)
-        scan.detections.push_back({ModuleId{static_cast<std::uint32_t>(17 + i)},
-                                   {640.25, 360.5},
-                                   0.031,
-                                   WordReading{4, false, {1, 2}, {1}, {2}, 41.26, 312},
-                                   png,
-                                   i == 0});
+        scan.detections.push_back({ModuleId{static_cast<std::uint32_t>(17 + i)}, Vector2d(640.25, 360.5), 0.031,
+                                   WordReading{4, false, {1, 2}, {1}, {2}, 41.26, 312}, png, i == 0});
     facts.scans = {scan};
     return facts;
 }
@@ -144,16 +140,32 @@ TEST(Report, ShowsWhatDecidedAndWhoDecidedOtherwise) {
     view.observations = {used, aside};
     body.views = {view};
     ReportFacts facts = factsWithData(3);
-    ReportedDetection near{ModuleId{30}, {10.5, 20.5}, 0, WordReading{4, false, {0, 3}, {0}, {}, 9.5, 3}, {}, false};
+    ReportedDetection near{ModuleId{30}, Vector2d(10, 20), 0, WordReading{4, false, {0, 3}, {0}, {}, 9.5, 3}, {},
+                           false};
     near.whyNot = "two <spots> blink its word";
     facts.scans[0].detections.push_back(near);
     facts.scans[0].unseen = {ModuleId{4}, ModuleId{5}, ModuleId{6}, ModuleId{9}};
     const std::string html = reportHtml(body, facts).toStdString();
-    for (const char* text :
-         {"not found: two &lt;spots&gt; blink its word", "1001<br>1000", "<td>9.5</td>", "4 to 6, 9",
-          "Port &lt;ttyUSB0&gt;", "Webcam C920", "Pose 3 was dropped", "a &lt;reflection&gt;", "0011aabb",
-          "28 pictures", "640.25, 360.50", "0.031", "0110<br>01.0", "41.3", "312", "<td>rejected</td>",
-          "<td>0.500</td><td>used</td>", "9 px from where the body has it", "<img src=\"data:image/png;base64,"})
+    for (const char* text : {"not found: two &lt;spots&gt; blink its word",
+                             "1001<br>1000",
+                             "<td>9.5</td>",
+                             "4 to 6, 9",
+                             "<td>10, 20</td>",
+                             "Port &lt;ttyUSB0&gt;",
+                             "Webcam C920",
+                             "Pose 3 was dropped",
+                             "a &lt;reflection&gt;",
+                             "0011aabb",
+                             "28 pictures",
+                             "640.25, 360.50",
+                             "0.031",
+                             "0110<br>01.0",
+                             "41.3",
+                             "312",
+                             "<td>rejected</td>",
+                             "<td>0.500</td><td>used</td>",
+                             "9 px from where the body has it",
+                             "<img src=\"data:image/png;base64,"})
         EXPECT_THAT(html, HasSubstr(text));
     const std::string without = reportHtml(body, {"now"}).toStdString();
     for (const char* text : {"Decided by the operator", "Detections</h2>", "Unique id", "<img"})

@@ -265,6 +265,54 @@ TEST_P(AnyScheme, ASingleSpotAmongReflectionsMayBeOne) {
     }
 }
 
+TEST_P(AnyScheme, AFurtherLookKnowsTheMirrorOfTheFirst) {
+    ScanPainter scan = scanOf(67, 26);
+    std::erase_if(scan.leds, [](const PaintedLed& led) { return led.pixel.y() > 108; });
+    reframe(scan);
+    for (const PaintedLed& led : scan.leds)
+        scan.mirrored.push_back({led.module, {led.pixel.x(), 232 - led.pixel.y()}, 0.3 * led.peak});
+    // The mirror shows one module that the camera does not see, and something shines in its image throughout the first
+    // look. The second is of that one and of another that is not seen twice: it shows no mirror.
+    scan.leds[0].peak = scan.mirrored[1].peak = 0;
+    const std::size_t first = scan.frames.size();
+    for (const FrameInfo& frame : std::vector(scan.frames)) {
+        FrameInfo& again = scan.frames.emplace_back(frame);
+        again.look = 1;
+        std::erase_if(again.lit, [&](const LitModule& lit) {
+            return lit.module != scan.leds[0].module && lit.module != scan.leds[1].module;
+        });
+    }
+    scan.disturb = [&](cv::Mat& light, std::size_t k) {
+        if (k < first && k % 3 == 0)
+            addSpot(light, scan.mirrored[0].pixel, 200, 1.2);
+    };
+    const ViewDetections view = decode(scan);
+    EXPECT_EQ(expectNoneWrong(scan, view), scan.leds.size() - 1);
+    EXPECT_NE(missing(view, scan.leds[0].module), nullptr);
+}
+
+TEST_P(AnyScheme, ModulesThatBlinkAlikeTellOfNoMirror) {
+    ScanPainter scan = scanOf(67, 26);
+    std::erase_if(scan.leds, [](const PaintedLed& led) { return led.pixel.y() > 108; });
+    const std::size_t own = scan.leds.size();
+    reframe(scan);
+    // Another limb, the same picture upside down: three of its modules are lit with three of the first.
+    for (std::size_t i = 0; i < 3; ++i) {
+        const PaintedLed& twin = scan.leds[i];
+        scan.leds.push_back(
+            {ModuleId{900 + static_cast<std::uint32_t>(i)}, {twin.pixel.x(), 232 - twin.pixel.y()}, 60});
+    }
+    for (FrameInfo& frame : scan.frames) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool isLit = std::any_of(frame.lit.begin(), frame.lit.end(),
+                                           [&](const LitModule& lit) { return lit.module == scan.leds[i].module; });
+            if (isLit)
+                frame.lit.push_back({scan.leds[own + i].module});
+        }
+    }
+    EXPECT_EQ(expectNoneWrong(scan, decode(scan)), own - 3);
+}
+
 TEST_P(AnyScheme, HandsOnAllSpotsThatMayBeTheLed) {
     for (std::uint64_t seed = 63; seed <= 68; ++seed) {
         ScanPainter scan = scanOf(seed, 10);

@@ -105,6 +105,21 @@ TEST(Looks, AfterAKnockAFurtherOneCountsForNothing) {
     EXPECT_FALSE(FurtherLooks(1).next(view));
 }
 
+TEST(Looks, SpotsToChooseFromAreNotMixedWithThoseOfACameraThatMayStandElsewhere) {
+    ViewDetections view;
+    view.undetected = {missing(1, Cause::Reflected), missing(2)};
+    view.undetected[0].spots.resize(1);
+    ViewDetections further;
+    further.found = {at(2, 300, 100)};
+    further.look = 1;
+    EXPECT_FALSE(addLook(view, further));
+    EXPECT_TRUE(view.found.empty());
+    EXPECT_EQ(view.look, 0U);
+    EXPECT_EQ(view.undetected[0].spots.size(), 1U);
+    view.unexplained = 3;
+    EXPECT_FALSE(FurtherLooks(1).next(view)) << "it would be of no use";
+}
+
 TEST(Looks, OneThatFindsNobodyAgainCannotTellWhereItsCameraStood) {
     ViewDetections view;
     view.found = {at(1, 100, 100)};

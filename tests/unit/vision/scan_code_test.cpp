@@ -99,7 +99,8 @@ TEST(ScanCode, ColoursAreToldApartByACameraThatMixesThem) {
             led.peak = std::min(led.peak, 110.0);
         const auto measured = ColourMixing::measured(scan.frames, scan.loader());
         ASSERT_TRUE(measured && *measured);
-        const Eigen::Matrix3d M = (*measured)->matrix() * std::cbrt(mixing.diagonal().prod());
+        const Eigen::Matrix3d& scaled = (*measured)->matrix();
+        const Eigen::Matrix3d M = scaled * std::cbrt(mixing.diagonal().prod() / scaled.diagonal().prod());
         EXPECT_LT((M - mixing).cwiseAbs().maxCoeff(), 0.03) << M;
         const ViewDetections view = decode(scan);
         EXPECT_EQ(expectNoneWrong(scan, view), scan.leds.size()) << seed;

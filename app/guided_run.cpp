@@ -67,8 +67,15 @@ GuidedRun::GuidedRun(Workbench& workbench, GuidedRunOptions options)
     input_.setEnabled(false);
     patience_.setSingleShot(true);
     connect(&patience_, &QTimer::timeout, this, [this] {
-        stop(step_ == Step::Posing ? QStringLiteral("the body did not come to rest in a new pose")
-                                   : QStringLiteral("the camera gave no pictures"));
+        if (step_ != Step::Posing)
+            return stop(QStringLiteral("the camera gave no pictures"));
+        stop(poses_.isKnownPose() ? QStringLiteral("the body rests as in a pose that is there already")
+                                  : QStringLiteral("the body did not come to rest in a new pose"));
+    });
+    connect(&poses_, &PosePresenter::sampled, this, [this] {
+        if (isPoseDue_ && poses_.isKnownPose() && !std::exchange(isToldKnown_, true))
+            say(QStringLiteral("It rests as in a pose that is there already. Turn it further, within %1 s")
+                    .arg(options_.patience.count()));
     });
     connect(&input_, &QSocketNotifier::activated, this, [this] {
         std::array<char, 256> bytes{};
@@ -230,6 +237,7 @@ void GuidedRun::nextPose() {
         environment.emplace_back(QStringLiteral("SKINCAL_UP"), numbers(*target));
         environment.emplace_back(QStringLiteral("SKINCAL_MODULE"), QString::number(poses_.reference()->value));
     }
+    isToldKnown_ = false;
     say(QStringLiteral("Pose %1 of %2: turn the body over and let it rest").arg(captured_ + 1).arg(options_.poses));
     if (!options_.onPose.isEmpty())
         prepare(options_.onPose, {}, std::move(environment), [this] { awaitPose(); });

@@ -83,10 +83,11 @@ class GuidedRun : public QObject {
     Step step_ = Step::Connecting;
     int captured_ = 0;
     int scanned_ = 0;
-    int tries_ = 0;           ///< of the scan of this view
-    bool isPoseDue_ = false;  ///< all is done for the body to come to rest
-    bool isScanDue_ = false;  ///< it begins as soon as skin and camera are there
-    bool isFailed_ = false;   ///< the scan, when it last changed
+    int tries_ = 0;             ///< of the scan of this view
+    bool isToldKnown_ = false;  ///< that this pose is none
+    bool isPoseDue_ = false;    ///< all is done for the body to come to rest
+    bool isScanDue_ = false;    ///< it begins as soon as skin and camera are there
+    bool isFailed_ = false;     ///< the scan, when it last changed
     bool areControlsTold_ = false;
     std::function<void()> afterEnter_;
     QSocketNotifier input_;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -84,6 +85,8 @@ int runProgram(int argc, char** argv) {
         "  skincal calibrate arm.skinrec -o arm.body.json  your own recording\n"
         "  skincal export arm.body.json --format urdf -o arm.urdf\n\n" +
         exitCodes + "\nEvery command explains itself: skincal COMMAND --help.");
+    // Commands that take orders from standard input go on in the background of a shell, where they have none.
+    std::signal(SIGTTIN, SIG_IGN);
     try {
         line.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

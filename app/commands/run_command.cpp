@@ -34,11 +34,12 @@ struct RunArguments {
     bool json = false;
 };
 
-std::string listed(const CameraList& list) {
+std::string othersThan(const std::string& wanted, const CameraList& list) {
     std::string text;
     for (const ListedCamera& camera : list.cameras())
         text += fmt::format("\n  \"{}\"{}", camera.description, camera.node.empty() ? "" : " at " + camera.node);
-    return text.empty() ? " no webcam is plugged in" : text;
+    return fmt::format("there is no camera \"{}\"{}", wanted,
+                       text.empty() ? ", and no webcam is plugged in" : "; these are:" + text);
 }
 
 /// A webcam by its name or node, else a video or stream.
@@ -52,7 +53,7 @@ tl::expected<Offer<FrameSource>, std::string> cameraAt(const std::string& text,
     const auto url = videoUrl(QString::fromStdString(text));
     const bool isThere = url && (!url->isLocalFile() || QFileInfo::exists(url->toLocalFile()));
     if (!isThere)
-        return tl::unexpected("there is no camera \"" + text + "\"; these are:" + listed(*list));
+        return tl::unexpected(othersThan(text, *list));
     return Offer<FrameSource>{
         QString::fromStdString(text), {}, [url = *url] { return std::make_unique<MediaSource>(url); }};
 }
@@ -90,6 +91,9 @@ int runGuided(RunArguments arguments) {
         if (const auto complaint = complaintAboutExisting(arguments.body))
             return badInput(*complaint);
     }
+    if (arguments.options.views > 0 && arguments.camera.empty())
+        return badInput(
+            "--camera is needed for views: a webcam's name or node, a video file or a stream; --views 0 takes none");
     const auto lens = readCameraModel(arguments.intrinsics);
     if (!lens)
         return badInput(lens.error().message());
@@ -134,8 +138,11 @@ int runGuided(RunArguments arguments) {
         run.begin();
         QCoreApplication::exec();
     }
-    if (why && why->isEmpty())
+    if (why && why->isEmpty()) {
+        if (arguments.options.views == 0)
+            fmt::print(stderr, "All poses are measured. Views place the patches: --views, --camera and --resume\n");
         return calibrateRecording(arguments);
+    }
     const int code = why ? badInput(why->toStdString()) : dataDoNotSuffice("interrupted");
     if (!workbench.session().measured().gravity.empty())
         fmt::print(stderr, "What was measured is in {}, and --resume goes on with it\n", arguments.output.string());
@@ -169,8 +176,10 @@ void addRunCommand(CommandLine& line) {
         ->add_option("--code", arguments->options.code,
                      "How a scan tells modules apart: by words that all blink at once, or one at a time, which takes "
                      "two pictures per module")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, ScanCode>{{"words", ScanCode::Words}, {"one-at-a-time", ScanCode::OneAtATime}}))
+        ->transform(CLI::CheckedTransformer(std::map<std::string, ScanCode>{{"words", ScanCode::Words},
+                                                                            {"one-at-a-time", ScanCode::OneAtATime}})
+                        .description(""))
+        ->type_name("words|one-at-a-time")
         ->default_str("words");
     command->add_option("--on-pose", arguments->onPose,
                         "Shell command that turns the body, run before each pose but the first");

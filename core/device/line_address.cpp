@@ -2,6 +2,7 @@
 
 #include <QCoreApplication>
 #include <QFileInfo>
+#include <QRegularExpression>
 
 #include "core/device/program_line.h"
 #include "core/device/serial_line.h"
@@ -26,25 +27,44 @@ tl::expected<LineAddress, QString> parseTcp(const QString& text) {
     const qsizetype colon = rest.lastIndexOf(u':');
     const auto port = colon > 0 ? positive(QStringView(rest).mid(colon + 1), 65535) : std::nullopt;
     if (!port)
-        return tl::unexpected(LineWords::tr("\"%1\" is no address: tcp://host:port was expected").arg(text));
+        return tl::unexpected(
+            LineWords::tr("\"%1\" is no address: tcp://host:port was expected, port from 1 to 65535").arg(text));
     QString host = rest.left(colon);
     if (host.startsWith(u'[') && host.endsWith(u']'))
         host = host.mid(1, host.size() - 2);  // IPv6
     return LineAddress{LineAddress::Kind::Tcp, host, *port, text};
 }
 
+/// Names without a path are those of ports in /dev, but for links that lie here.
+QString inFull(const QString& port) {
+    const QFileInfo here(port);
+    return here.isRelative() && here.exists() ? here.absoluteFilePath() : port;
+}
+
 tl::expected<LineAddress, QString> parseSerial(const QString& text) {
     const qsizetype at = text.lastIndexOf(u'@');
-    if (at < 0)
-        return LineAddress{LineAddress::Kind::Serial, text, LineAddress::kBaud, text};
-    const auto baud = positive(QStringView(text).mid(at + 1), 50'000'000);
+    const QString port = inFull(text.left(at));
+    if (at < 0) {
+        static const QRegularExpression gateway(QStringLiteral("^[\\w.-]+:\\d+$"));
+        if (gateway.match(text).hasMatch() && !QFileInfo::exists(port))
+            return tl::unexpected(LineWords::tr("\"%1\" is no port; of a gateway it is tcp://%1").arg(text));
+        return LineAddress{LineAddress::Kind::Serial, port, LineAddress::kBaud, text};
+    }
+    constexpr int kMostBaud = 50'000'000;
+    const auto baud = positive(QStringView(text).mid(at + 1), kMostBaud);
     if (!baud || at == 0)
-        return tl::unexpected(LineWords::tr("\"%1\" is no port: port@baud was expected").arg(text));
-    return LineAddress{LineAddress::Kind::Serial, text.left(at), *baud, text};
+        return tl::unexpected(
+            LineWords::tr("\"%1\" is no port: port@baud was expected, baud from 1 to %2").arg(text).arg(kMostBaud));
+    return LineAddress{LineAddress::Kind::Serial, port, *baud, text};
 }
 
 QString permissionHelp(const LineAddress& address) {
-    const QString group = QFileInfo(SerialLine::fullPath(address.target)).group();
+    const QFileInfo port(SerialLine::fullPath(address.target));
+    const QString group = port.group();
+    const bool doesGroupHelp = port.permission(QFileDevice::ReadGroup | QFileDevice::WriteGroup);
+    if (!group.isEmpty() && (!doesGroupHelp || group == QLatin1String("root")))
+        return LineWords::tr("you may not open %1: \"sudo chmod a+rw %2\", until it is plugged in anew")
+            .arg(address.target, port.filePath());
     return LineWords::tr("you may not open %1: \"sudo usermod -aG %2 $USER\", then log out and in again")
         .arg(address.target, group.isEmpty() ? QStringLiteral("dialout") : group);
 }

@@ -45,6 +45,11 @@ QString PseudoTerminal::open(const QString& link) {
         ::tcsetattr(slave_, TCSANOW, &settings);
     }
     if (!link.isEmpty()) {
+        // Of one that was killed the link leads nowhere any more.
+        if (QFileInfo(link).isSymLink() && QFileInfo::exists(link)) {
+            close();
+            return QStringLiteral("%1 is another port's name already").arg(link);
+        }
         if (QFileInfo(link).isSymLink())
             QFile::remove(link);
         if (!QFile::link(name_, link)) {

@@ -4,9 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <pty.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
 #include <QDir>
+#include <QFileInfo>
 #include <QProcess>
 #include <QTemporaryDir>
+#include <csignal>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -217,6 +223,51 @@ TEST(VirtualSkinCommand, ARunGoesOnOnceAGatewayThatWasKilledIsThereAgain) {
     const auto recording = readRecording(at("w.skinrec").toStdString());
     ASSERT_TRUE(recording) << output.toStdString();
     EXPECT_EQ(recording->gravity.size(), 2 * theSkin().modules.size());
+}
+
+/// A terminal's foreground is a shell that only waits; what runs in its background reads from a keyboard that is not
+/// its own.
+class Backgrounded {
+  public:
+    explicit Backgrounded(const std::string& link) {
+        session_ = ::forkpty(&keyboard_, nullptr, nullptr, nullptr);
+        if (session_ != 0)
+            return;
+        if (::fork() == 0) {
+            ::setpgid(0, 0);
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+            ::execl(SKINCAL_PROGRAM, SKINCAL_PROGRAM, "virtual-skin", kScenario, "--link", link.c_str(), nullptr);
+            ::_exit(1);
+        }
+        while (true)
+            ::pause();
+    }
+    ~Backgrounded() {
+        ::kill(session_, SIGKILL);
+        ::waitpid(session_, nullptr, 0);
+        ::close(keyboard_);
+    }
+    Backgrounded(const Backgrounded&) = delete;
+    Backgrounded& operator=(const Backgrounded&) = delete;
+
+    void type(const std::string& text) const {
+        ASSERT_EQ(::write(keyboard_, text.data(), text.size()), ssize_t(text.size()));
+    }
+
+  private:
+    int keyboard_ = -1;
+    pid_t session_ = -1;
+};
+
+TEST(VirtualSkinCommand, GoesOnInTheBackgroundOfAShellWhateverIsTyped) {
+    const QTemporaryDir folder;
+    const std::string link = folder.filePath(QStringLiteral("skin")).toStdString();
+    const Backgrounded skin(link);
+    skin.type("skincal explore\n");
+    ASSERT_TRUE(waitFor([&] { return QFileInfo::exists(QString::fromStdString(link)); }));
+    skin.type("and another line\n");
+    const Outcome outcome = run("explore " + link);
+    EXPECT_EQ(outcome.code, 0) << outcome.error;
 }
 
 }  // namespace

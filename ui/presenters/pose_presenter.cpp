@@ -165,8 +165,10 @@ void PosePresenter::takeSample(const AccelerationSample& sample) {
     pose_capture::Sample event{sample.time, meter_->isAtRest(), true};
     if (event.isAtRest) {
         const auto means = meter_->meansSince(sample.time - meter_->window(), 0);
-        event.isNew = !isHeld_ && angleToNearestPose(countingReadings_, means) > kSamePose;
+        isKnownPose_ = angleToNearestPose(countingReadings_, means) <= kSamePose;
+        event.isNew = !isHeld_ && !isKnownPose_;
     } else if (meter_->movement()) {
+        isKnownPose_ = false;
         isHeld_ = false;
     }
     handle(event);

@@ -44,6 +44,8 @@ class PosePresenter : public QObject {
     [[nodiscard]] double restsBelow() const { return stillness_.restsBelow; }
     /// Share of the rest that has passed, 0 to 1.
     [[nodiscard]] double restDone() const;
+    /// The body rests as in a pose that was captured already.
+    [[nodiscard]] bool isKnownPose() const { return isKnownPose_; }
 
     /// Unit vectors against gravity: now, in all poses that count, and where the next should point.
     [[nodiscard]] std::optional<Vector3d> up() const { return up_; }
@@ -91,6 +93,7 @@ class PosePresenter : public QObject {
     bool isActive_ = false;
     /// Something was undone and the body has not moved since: a capture by itself would be what was just undone, and
     /// end what can be redone.
+    bool isKnownPose_ = false;
     bool isHeld_ = false;
 };
 

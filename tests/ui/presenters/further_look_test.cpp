@@ -14,8 +14,8 @@ using test::waitFor;
 using Phase = ScanRun::Phase;
 
 Scenario crowdedScenario() {
-    // LEDs 6 px apart.
-    Scenario scenario = scanWorld({Disturbance::Crowding, 6, 55, 0.8, ScanMethod::Coded}, 1).scenario;
+    // LEDs 3.5 px apart.
+    Scenario scenario = scanWorld({Disturbance::Crowding, 3.5, 55, 0.8, ScanMethod::Coded}, 1).scenario;
     scenario.views.count = Scenario{}.views.count;
     return scenario;
 }
@@ -23,7 +23,7 @@ Scenario crowdedScenario() {
 class FurtherLook : public testing::Test {
   protected:
     FurtherLook() : desk_(crowdedScenario(), 1) {
-        desk_.rig.moveCamera(scanWorld({Disturbance::Crowding, 6, 55, 0.8, ScanMethod::Coded}, 1).T_r_v[0]);
+        desk_.rig.moveCamera(scanWorld({Disturbance::Crowding, 3.5, 55, 0.8, ScanMethod::Coded}, 1).T_r_v[0]);
         EXPECT_TRUE(waitFor([&] { return desk_.rig.isCameraAtRest(); }));
         EXPECT_TRUE(desk_.connectSkin() && desk_.startCamera());
     }

@@ -6,8 +6,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <QDir>
 #include <QSignalSpy>
 #include <QTcpServer>
+#include <QTemporaryDir>
+#include <QTemporaryFile>
 #include <algorithm>
 #include <array>
 #include <tuple>
@@ -200,10 +203,41 @@ TEST(Line, APortThatIsOpenElsewhereIsInUse) {
 }
 
 TEST(Line, NoPermissionNamesTheCommandThatMendsIt) {
-    const LineAddress address = parseLineAddress(QStringLiteral("/dev/null")).value();
-    const QString help = lineHelp(LineFault::NoPermission, address, {});
-    EXPECT_TRUE(help.contains(QLatin1String("sudo usermod -aG "))) << help.toStdString();
-    EXPECT_TRUE(help.contains(QLatin1String("$USER"))) << help.toStdString();
+    const auto helpFor = [](const QString& path) {
+        return lineHelp(LineFault::NoPermission, parseLineAddress(path).value(), {});
+    };
+    const QString help = helpFor(QStringLiteral("/dev/ttyUSB99"));
+    EXPECT_TRUE(help.contains(QLatin1String("sudo usermod -aG dialout $USER"))) << help.toStdString();
+    // Nobody shall become a member of root, and where the group may do nothing that would not help.
+    EXPECT_TRUE(helpFor(QStringLiteral("/dev/null")).contains(QLatin1String("sudo chmod a+rw /dev/null")));
+    QTemporaryFile own;
+    ASSERT_TRUE(own.open());
+    own.setPermissions(QFileDevice::ReadOwner | QFileDevice::WriteOwner);
+    EXPECT_TRUE(helpFor(own.fileName()).contains(QLatin1String("sudo chmod a+rw ")));
+}
+
+TEST(Line, LinksThatLieHereAreFoundAndGatewaysAreNoPorts) {
+    const QTemporaryDir folder;
+    const QString before = QDir::currentPath();
+    ASSERT_TRUE(QDir::setCurrent(folder.path()));
+    PseudoTerminal terminal;
+    EXPECT_EQ(terminal.open(QStringLiteral("skin")), QString());
+    EXPECT_EQ(parseLineAddress(QStringLiteral("skin"))->target, QFileInfo(QStringLiteral("skin")).absoluteFilePath());
+    EXPECT_EQ(parseLineAddress(QStringLiteral("./skin@9600"))->target,
+              QFileInfo(QStringLiteral("./skin")).absoluteFilePath());
+    EXPECT_EQ(parseLineAddress(QStringLiteral("ttyUSB0"))->target, QStringLiteral("ttyUSB0"));
+    // The name of a port that is there is not taken from it, and of one that is gone it is.
+    PseudoTerminal second;
+    EXPECT_TRUE(second.open(QStringLiteral("skin")).contains(QLatin1String("another port's name")));
+    EXPECT_TRUE(QFileInfo::exists(QStringLiteral("skin")));
+    terminal.close();
+    ASSERT_TRUE(QFile::link(QStringLiteral("/dev/pts/gone"), QStringLiteral("skin")));
+    EXPECT_EQ(second.open(QStringLiteral("skin")), QString());
+    second.close();
+    ASSERT_TRUE(QDir::setCurrent(before));
+    const auto gateway = parseLineAddress(QStringLiteral("localhost:7000"));
+    ASSERT_FALSE(gateway);
+    EXPECT_TRUE(gateway.error().contains(QLatin1String("tcp://localhost:7000")));
 }
 
 TEST(Line, BytesPassBothWaysAndAnUnpluggedOneEnds) {

@@ -89,11 +89,12 @@ std::vector<SpotCandidate> maximaOf(const cv::Mat& change, bool isHalf, const Sp
 // sum += |a - b|
 void addDifference(const cv::Mat& a, const cv::Mat& b, cv::Mat& sum) {
     forBands(sum.rows, [&](int first, int last) {
+        const int width = sum.cols;
         for (int y = first; y < last; ++y) {
             const auto* pa = a.ptr<std::uint8_t>(y);
             const auto* pb = b.ptr<std::uint8_t>(y);
             auto* to = sum.ptr<std::uint16_t>(y);
-            for (int x = 0; x < sum.cols; ++x)
+            for (int x = 0; x < width; ++x)
                 to[x] = static_cast<std::uint16_t>(to[x] + (std::max(pa[x], pb[x]) - std::min(pa[x], pb[x])));
         }
     });
@@ -145,13 +146,14 @@ void SpotFinder::noteStep(const cv::Mat& now, const cv::Mat& before, cv::Mat& la
     if (lastStep.empty())
         lastStep = cv::Mat::zeros(now.size(), CV_16S);
     forBands(now.rows, [&](int first, int end) {
+        const int width = now.cols;
         for (int y = first; y < end; ++y) {
             const auto* here = now.ptr<std::int16_t>(y);
             const auto* there = before.ptr<std::int16_t>(y);
             auto* last = lastStep.ptr<std::int16_t>(y);
             auto* jump = jump_.ptr<std::int16_t>(y);
             auto* flash = flash_.ptr<std::int16_t>(y);
-            for (int x = 0; x < now.cols; ++x) {
+            for (int x = 0; x < width; ++x) {
                 const auto step = static_cast<std::int16_t>(here[x] - there[x]);
                 const auto back = static_cast<std::int16_t>(-step);
                 const auto forth = static_cast<std::int16_t>(-last[x]);

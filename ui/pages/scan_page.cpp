@@ -53,8 +53,7 @@ QString namesOf(const std::vector<ModuleId>& modules) {
 }  // namespace
 
 ScanPage::ScanPage(Workbench& workbench, ScanPresenter& presenter, QWidget* parent)
-    : Page(tr("Scan"), tr("LEDs are told apart by how they blink. Hold camera and body still meanwhile."),
-           parent),
+    : Page(tr("Scan"), tr("LEDs are told apart by how they blink. Hold camera and body still meanwhile."), parent),
       workbench_(workbench),
       presenter_(presenter),
       picture_(new PictureView),

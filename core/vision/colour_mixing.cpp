@@ -7,12 +7,13 @@
 #include <opencv2/core.hpp>
 #include <set>
 
+#include "core/vision/frame_pixels.h"
 #include "core/vision/paper_frames.h"
 
 namespace skincal {
 namespace {
 
-constexpr int kClipped = 254;
+constexpr int kClipped = FramePixels::kTop;
 
 struct Primary {
     FramePair pictures;
@@ -102,7 +103,7 @@ tl::expected<std::optional<ColourMixing>, std::string> ColourMixing::measured(st
             if (!picture)
                 return tl::unexpected(std::move(picture.error()));
             // What else is wrong with it whoever decodes it says.
-            if (picture->type() != CV_8UC3 || (i > 0 && picture->size() != bright[0].size()))
+            if (picture->type() != CV_8UC3 || (!bright[0].empty() && picture->size() != bright[0].size()))
                 return std::nullopt;
             *to = *std::move(picture);
         }

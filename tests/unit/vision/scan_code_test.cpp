@@ -123,6 +123,21 @@ TEST(ScanCode, ColoursThatTheCameraCannotTellApartAreLeftAsTheyAre) {
     EXPECT_FALSE(*ColourMixing::measured({}, broken));
 }
 
+TEST(ScanCode, PicturesOfSeveralSizesAreLeftToWhoeverDecodesThem) {
+    const ScanPainter scan = paintedScan(7, ScanCode::Colours);
+    for (std::size_t odd = 0; odd < 6; ++odd) {
+        const FrameLoader load = [&](std::size_t k) -> tl::expected<cv::Mat, std::string> {
+            const cv::Mat picture = scan.paint(k);
+            return k == odd ? cv::Mat(picture(cv::Rect(0, 0, 100, 80)).clone()) : picture;
+        };
+        const auto measured = ColourMixing::measured(scan.frames, load);
+        ASSERT_TRUE(measured);
+        const auto view = decodeView("view", scan.modules(), scan.frames, load);
+        ASSERT_FALSE(view);
+        EXPECT_THAT(view.error().message.english(), ::testing::HasSubstr("pixels"));
+    }
+}
+
 TEST(ScanCode, PicturesWithoutColoursAreUnmixedToNothingElse) {
     const ScanPainter scan = paintedScan(6, ScanCode::Colours);
     const auto measured = ColourMixing::measured(scan.frames, scan.loader());

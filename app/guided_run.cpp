@@ -171,6 +171,10 @@ void GuidedRun::pictureChanged() {
     if (const QString obstacle = scan_.obstacle(); !obstacle.isEmpty())
         return stop(obstacle);
     patience_.stop();
+    if (captured_ < options_.poses) {
+        scan_.setActive(false);
+        return beginPoses();
+    }
     step_ = Step::Scanning;
     nextView();
 }
@@ -216,7 +220,11 @@ void GuidedRun::connected() {
     if (captured_ > 0)
         say(QStringLiteral("%1 poses and %2 views are there already").arg(captured_).arg(scanned_));
     save();
-    beginPoses();
+    // That a camera gives no pictures, or of another size than its lens, is known before a body was turned eight times.
+    if (scanned_ < options_.views)
+        startCamera();
+    else
+        beginPoses();
 }
 
 void GuidedRun::beginPoses() {
@@ -267,10 +275,16 @@ void GuidedRun::endPoses() {
         save();
         return;
     }
+    startCamera();
+}
+
+void GuidedRun::startCamera() {
     step_ = Step::Camera;
     say(QStringLiteral("Starting the camera"));
-    workbench_.chooseCamera(0);
-    connect(workbench_.camera(), &FrameSource::abilitiesChanged, this, &GuidedRun::noteControls);
+    if (workbench_.camera() == nullptr) {
+        workbench_.chooseCamera(0);
+        connect(workbench_.camera(), &FrameSource::abilitiesChanged, this, &GuidedRun::noteControls);
+    }
     goOn();
     scan_.setActive(true);
 }

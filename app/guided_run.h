@@ -23,7 +23,8 @@ struct GuidedRunOptions {
     std::chrono::seconds absence{120};   ///< of a skin or camera that was lost, until the run ends
 };
 
-/// The guided procedure without a window: connect, poses, views, each written to the recording as soon as it is there.
+/// The guided procedure without a window: connect, a picture, poses, views, each written to the recording as soon as it
+/// is there.
 /// It drives the presenters that the window's pages show; lines on standard error say what is going on and what a
 /// person has to do, Enter says that it is done. Poses and views that the session has already are not taken again; it
 /// stops where they are of another skin.
@@ -45,7 +46,7 @@ class GuidedRun : public QObject {
     void finished(const QString& why);
 
   private:
-    enum class Step { Connecting, Posing, Camera, Scanning, Done };
+    enum class Step { Connecting, Camera, Posing, Scanning, Done };  // Camera comes again after Posing
 
     void connectionChanged();
     void connected();
@@ -56,6 +57,7 @@ class GuidedRun : public QObject {
     void beginWaiting(Absence& absence, const QString& why);
     /// With what waits for skin and camera, once both are there.
     void goOn();
+    void startCamera();
     void beginPoses();
     void endPoses();
     void nextPose();

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/command_line.h"
+#include "app/qt_messages.h"
 #include "app/window.h"
 #include "core/formats/file_error.h"
 
@@ -50,11 +51,15 @@ int runProgram(int argc, char** argv) {
     line.app.add_flag("--demo", window.demo,
                       "Open the window on a simulated arm with skin and a webcam, connected already");
     line.app.add_flag("--light", window.light, "Light colours");
-    const auto isRecording = [](const std::string& path) -> std::string {
+    const auto isRecording = [&line](const std::string& path) -> std::string {
         std::error_code none;
         if (std::filesystem::is_directory(path, none))
             return {};
-        return "'" + printable(path) + "' is neither a command nor the directory of a recording";
+        std::string commands;
+        for (const CLI::App* command : line.app.get_subcommands({}))
+            commands += (commands.empty() ? "" : ", ") + command->get_name();
+        return "'" + printable(path) + "' is neither a command nor the directory of a recording; commands are " +
+               commands;
     };
     line.app
         .add_option("recording,--open", window.recording, "Open the window with this recording (a *.skinrec directory)")
@@ -105,6 +110,7 @@ bool standardOutputFailed() {
 
 int main(int argc, char** argv) {
     using namespace skincal;
+    hideWhatQtSaysOfSound();
     int code = kBadInput;
     try {
         code = runProgram(argc, argv);

@@ -88,7 +88,7 @@ void addExploreCommand(CommandLine& line) {
     auto arguments = std::make_shared<ExploreArguments>();
     CLI::App* command = line.app.add_subcommand("explore", "Ask a skin for its modules and how they are linked");
     command
-        ->add_option("device", arguments->skin.device,
+        ->add_option("device,--device", arguments->skin.device,
                      "A serial port (/dev/ttyUSB0, or with its speed /dev/ttyUSB0@921600), tcp://host:port, or "
                      "exec:COMMAND, a program that speaks the protocol on its input and output, quoted as in a shell")
         ->required();

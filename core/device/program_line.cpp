@@ -33,7 +33,7 @@ void ProgramLine::open() {
     });
     connect(process, &QProcess::finished, this, [this](int code) {
         const QString said = QString::fromUtf8(lastError_);
-        const QString detail = said.isEmpty() && code != 0 ? tr("exit code %1").arg(code) : said;
+        const QString detail = said.isEmpty() ? tr("exit code %1").arg(code) : said;
         QTimer::singleShot(0, process_.get(), [this, detail] { fail(LineFault::Ended, detail); });
     });
     const auto words = splitCommand(command_);

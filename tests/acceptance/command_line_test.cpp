@@ -304,7 +304,9 @@ TEST_F(CommandLineTest, UsageErrorsGiveTwoAndHelpGivesZero) {
         << "a recording is one to open";
     const Outcome unknown = run("calibrat");
     EXPECT_EQ(unknown.code, 2);
-    EXPECT_THAT(unknown.error, HasSubstr("'calibrat' is neither a command nor the directory of a recording"));
+    EXPECT_THAT(
+        unknown.error,
+        HasSubstr("'calibrat' is neither a command nor the directory of a recording; commands are demo, calibrate, "));
     EXPECT_EQ(run("calibrate").code, 2);
     EXPECT_EQ(run("calibrate x --method magic").code, 2);
     EXPECT_EQ(run("--version").code, 0);

@@ -175,8 +175,20 @@ TEST(GuidedRun, SaysWhatIsMissing) {
     EXPECT_NE(desk.output.find("plugged in"), std::string::npos) << desk.output;
     EXPECT_EQ(desk.run(common + QStringList{"--device", desk.port(), "--camera", "Nobody's webcam"}), 2);
     EXPECT_NE(desk.output.find(kCameraName), std::string::npos) << desk.output;
+    EXPECT_FALSE(desk.said("XDG_RUNTIME_DIR")) << desk.output;
+    EXPECT_FALSE(desk.said("PulseAudio")) << desk.output;
     EXPECT_EQ(desk.run(common + QStringList{"--device", "tcp://nowhere", "--camera", kCameraName}), 2);
     EXPECT_NE(desk.output.find("tcp://host:port"), std::string::npos) << desk.output;
+}
+
+TEST(GuidedRun, AStreamThatNobodySendsIsToldBeforeAnyPose) {
+    DeskWithWires desk("demo");
+    EXPECT_EQ(desk.run({"run", "-o", desk.file("desk.skinrec"), "--intrinsics", desk.lensFile(), "--device",
+                        desk.port(), "--camera", "http://127.0.0.1:9/stream"}),
+              2)
+        << desk.output;
+    EXPECT_TRUE(desk.said("http://127.0.0.1:9/stream")) << desk.output;
+    EXPECT_FALSE(desk.said("Pose 1")) << desk.output;
 }
 
 /// One pose and one view of a small skin, the shortest run in which all takes part.
@@ -237,6 +249,7 @@ TEST(GuidedRun, ALensForPicturesOfAnotherSizeIsToldAsSoonAsOneCame) {
     ASSERT_TRUE(writeCameraModel(desk.lensFile().toStdString(), lens));
     EXPECT_EQ(desk.run(shortRun(desk)), 2) << desk.output;
     EXPECT_TRUE(desk.said("The intrinsics are for")) << desk.output;
+    EXPECT_FALSE(desk.said("Pose 1")) << "the body was turned for nothing";
     EXPECT_FALSE(desk.said("gave no pictures")) << desk.output;
 }
 

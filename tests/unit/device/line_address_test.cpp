@@ -83,6 +83,11 @@ TEST(Line, EveryWayToFailHasItsReasonAndWhatToDo) {
         EXPECT_TRUE(help.contains(QLatin1String("no robot here"))) << help.toStdString();
     }
     {
+        const auto [fault, help] = faultOf(QStringLiteral("exec:true"));
+        EXPECT_EQ(fault, LineFault::Ended);
+        EXPECT_TRUE(help.contains(QLatin1String("exit code 0"))) << help.toStdString();
+    }
+    {
         QTcpServer server;
         ASSERT_TRUE(server.listen(QHostAddress::LocalHost));
         const int port = server.serverPort();

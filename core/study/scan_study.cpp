@@ -1,10 +1,13 @@
 #include "core/study/scan_study.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
+#include "core/geometry/parallel.h"
 #include "core/simulation/renderer.h"
 #include "core/study/centre_bound.h"
 #include "core/vision/decoder.h"
@@ -131,22 +134,35 @@ bool ScanStudyOptions::validate() const {
 ScanStudy runScanStudy(const ScanStudyOptions& options, const RunContext& context) {
     if (!options.validate())
         throw std::logic_error("ScanStudyOptions out of range");
-    ScanStudy study{options, {}, false};
-    const double all = static_cast<double>(options.cases.size()) * options.seeds;
+    const auto seeds = static_cast<std::size_t>(options.seeds);
+    std::vector<ScanScore> scores(options.cases.size() * seeds);
+    // The context is asked on this thread alone, within scans as well.
+    std::atomic<bool> cancelled = false;
+    const auto goesOn = [&] {
+        if (context.isCancelled())
+            cancelled = true;
+        return !cancelled;
+    };
     RunContext silent;
-    silent.isCancelled = context.isCancelled;
-    double done = 0;
-    for (const ScanCase& what : options.cases) {
-        ScanStudyRow row{what, {}};
-        for (int i = 0; i < options.seeds; ++i) {
-            context.report(Sentence::saying("scanning"), done++ / all);
-            row.score.add(scoreScan(what, options.firstSeed + static_cast<std::uint64_t>(i), silent));
-            if (context.isCancelled()) {
-                study.cancelled = true;
-                return study;
-            }
-        }
-        study.rows.push_back(std::move(row));
+    silent.isCancelled = [&, own = std::this_thread::get_id()] {
+        return std::this_thread::get_id() == own ? !goesOn() : cancelled.load();
+    };
+    forEachInParallel(
+        scores.size(), 1,
+        [&](std::size_t i) { scores[i] = scoreScan(options.cases[i / seeds], options.firstSeed + i % seeds, silent); },
+        [&](std::size_t i) {
+            context.report(Sentence::saying("scanning"), static_cast<double>(i) / static_cast<double>(scores.size()));
+            return goesOn();
+        },
+        [&] { (void)goesOn(); });
+    ScanStudy study{options, {}, cancelled};
+    if (study.cancelled)
+        return study;
+    for (std::size_t k = 0; k < options.cases.size(); ++k) {
+        ScanStudyRow row{options.cases[k], {}};
+        for (std::size_t i = 0; i < seeds; ++i)
+            row.score.add(scores[k * seeds + i]);
+        study.rows.push_back(row);
     }
     return study;
 }

@@ -34,7 +34,8 @@ struct ScanStudy {
     bool cancelled = false;
 };
 
-/// Everything but the seconds is the same whenever it runs. Throws std::logic_error where the options are out of range.
+/// Scans are made on all processors beside each other, which the seconds, of each by itself, feel; all else is the same
+/// whenever it runs. What was cancelled has no rows. Throws std::logic_error where the options are out of range.
 [[nodiscard]] ScanStudy runScanStudy(const ScanStudyOptions& options, const RunContext& context = {});
 
 /// As a Markdown table, one line per case, and the sum below it.

@@ -146,6 +146,39 @@ TEST(ScanStudy, ComparesThePapersScanWithTheBoundThoughItSkipsPictures) {
     EXPECT_EQ(paper.wrong, 0U);
 }
 
+TEST(ScanStudy, ScansBesideEachOtherSumUpAsOneAfterTheOther) {
+    ScanStudyOptions options;
+    options.seeds = 3;
+    options.firstSeed = 4;
+    options.cases = {{Disturbance::Screen, 60, 7, 0.8, ScanMethod::Coded},
+                     {Disturbance::Sun, 0.3, 7, 0.8, ScanMethod::Coded}};
+    const ScanStudy study = runScanStudy(options);
+    ASSERT_EQ(study.rows.size(), options.cases.size());
+    EXPECT_FALSE(study.cancelled);
+    for (std::size_t k = 0; k < options.cases.size(); ++k) {
+        ScanScore sum;
+        for (std::uint64_t seed = 4; seed < 7; ++seed)
+            sum.add(scoreScan(options.cases[k], seed));
+        EXPECT_EQ(study.rows[k].score.views, 3U);
+        EXPECT_EQ(study.rows[k].score.frames, sum.frames);
+        EXPECT_EQ(study.rows[k].score.found, sum.found);
+        EXPECT_EQ(study.rows[k].score.squaredError, sum.squaredError);
+        EXPECT_EQ(study.rows[k].score.squaredSigmas, sum.squaredSigmas);
+    }
+}
+
+TEST(ScanStudy, EndsWhereItIsCancelled) {
+    ScanStudyOptions options;
+    options.seeds = 1000;
+    options.cases = {{Disturbance::None, 0, 7, 0.8, ScanMethod::Coded}};
+    RunContext context;
+    int asked = 0;
+    context.isCancelled = [&] { return ++asked > 5; };
+    const ScanStudy study = runScanStudy(options, context);
+    EXPECT_TRUE(study.cancelled);
+    EXPECT_TRUE(study.rows.empty());
+}
+
 TEST(ScanStudy, TablesAndPlotsNameEveryCase) {
     ScanStudyOptions options;
     options.seeds = 1;

@@ -48,8 +48,15 @@ class StudiedScan {
                 frames_.push_back({{}, lit, {}, further.looks()});
             if (!pictures_.empty())
                 pictures_.resize(frames_.size());
-            view = decode(&*view, first, context);
+            auto looked = decode(&*view, first, context);
+            // What the looks before it found is kept, as where an operator scans.
+            if (!looked && !looked.error().cancelled)
+                break;
+            view = std::move(looked);
         }
+        // Pictures that are refused give nothing, which counts against the scan.
+        if (!view && !view.error().cancelled)
+            view = ViewDetections();
         if (!view)
             return {};
         ScanScore result = scoreOf(world_, *view, bounds());
@@ -89,8 +96,6 @@ class StudiedScan {
                     : what_.method == ScanMethod::PaperSingle
                         ? detectPaper("view", modules_, frames_, load, {}, context)
                         : decodeView("view", modules_, frames_, load, {}, context);
-        if (!view && !view.error().cancelled)
-            throw std::logic_error("a scan of the study can't be decoded: " + view.error().message.english());
         seconds_ = std::chrono::duration<double>(Clock::now() - start).count() - painting_;
         return view;
     }

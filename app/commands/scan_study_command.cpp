@@ -33,6 +33,7 @@ Json toJson(const ScanStudyRow& row) {
             {"distance", row.what.distance},
             {"scan", name(row.what.method)},
             {"views", score.views},
+            {"refused", score.refused},
             {"pictures", score.frames / std::max<std::size_t>(1, score.views)},
             {"visible", score.visible},
             {"found", score.found},

@@ -52,6 +52,7 @@ double ScanScore::rmsBounds() const {
 
 void ScanScore::add(const ScanScore& other) {
     views += other.views;
+    refused += other.refused;
     frames += other.frames;
     visible += other.visible;
     found += other.found;

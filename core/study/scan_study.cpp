@@ -55,11 +55,13 @@ class StudiedScan {
             view = std::move(looked);
         }
         // Pictures that are refused give nothing, which counts against the scan.
-        if (!view && !view.error().cancelled)
+        const bool isRefused = !view && !view.error().cancelled;
+        if (isRefused)
             view = ViewDetections();
         if (!view)
             return {};
         ScanScore result = scoreOf(world_, *view, bounds());
+        result.refused = isRefused ? 1 : 0;
         result.frames = frames_.size();
         result.seconds = seconds_;
         return result;

@@ -37,8 +37,9 @@ std::string scanTable(const ScanStudy& study) {
             coded.add(row.score);
     }
     if (coded.views > 0)
-        text += fmt::format("\n{} coded scans: {} modules visible, {} found, {} wrong.\n", coded.views, coded.visible,
-                            percent(coded.found, coded.visible), coded.wrong);
+        text +=
+            fmt::format("\n{} coded scans, {} of them refused: {} modules visible, {} found, {} wrong.\n", coded.views,
+                        coded.refused, coded.visible, percent(coded.found, coded.visible), coded.wrong);
     return text;
 }
 

@@ -12,7 +12,7 @@ namespace skincal {
 /// What came out, of one view or the sum over many.
 struct ScanScore {
     std::size_t views = 0;
-    std::size_t refused = 0;  ///< of these, whose first pictures the decoder refused: nothing is found in them
+    std::size_t refused = 0;  ///< of these, in which the decoder refused the pictures of a look: it adds nothing
     std::size_t frames = 0;
     std::size_t visible = 0;   ///< modules that face the camera, in the picture and not hidden by the body
     std::size_t found = 0;     ///< of these, where they are

@@ -50,18 +50,20 @@ class StudiedScan {
                 pictures_.resize(frames_.size());
             auto looked = decode(&*view, first, context);
             // What the looks before it found is kept, as where an operator scans.
-            if (!looked && !looked.error().cancelled)
+            isRefused_ = isRefused(looked);
+            if (isRefused_)
                 break;
             view = std::move(looked);
         }
-        // Pictures that are refused give nothing, which counts against the scan.
-        const bool isRefused = !view && !view.error().cancelled;
-        if (isRefused)
+        // First pictures that are refused give nothing, which counts against the scan.
+        if (isRefused(view)) {
+            isRefused_ = true;
             view = ViewDetections();
+        }
         if (!view)
             return {};
         ScanScore result = scoreOf(world_, *view, bounds());
-        result.refused = isRefused ? 1 : 0;
+        result.refused = isRefused_ ? 1 : 0;
         result.frames = frames_.size();
         result.seconds = seconds_;
         return result;
@@ -69,8 +71,11 @@ class StudiedScan {
 
   private:
     using Clock = std::chrono::steady_clock;
+    using Decoded = tl::expected<ViewDetections, ScanError>;
     // Decoders pass over the pictures several times: they are kept where that is a few, else painted anew.
     static constexpr std::size_t kKept = 300;
+
+    static bool isRefused(const Decoded& view) { return !view && !view.error().cancelled; }
 
     static std::vector<FrameInfo> planned(World& world, const ScanCase& what) {
         const bool isCoded = what.method == ScanMethod::Coded || what.method == ScanMethod::CodedOnce;
@@ -89,8 +94,7 @@ class StudiedScan {
         return picture;
     }
 
-    tl::expected<ViewDetections, ScanError> decode(const ViewDetections* before, std::size_t first,
-                                                   const RunContext& context) {
+    Decoded decode(const ViewDetections* before, std::size_t first, const RunContext& context) {
         const FrameLoader load = [this](std::size_t k) { return picture(k); };
         painting_ = 0;
         const auto start = Clock::now();
@@ -117,6 +121,7 @@ class StudiedScan {
     FrameRenderer renderer_;
     std::vector<cv::Mat> pictures_;
     std::vector<ModuleId> modules_;
+    bool isRefused_ = false;
     double painting_ = 0;  ///< s, of the last decode
     double seconds_ = 0;   ///< that the last decode took without it
 };

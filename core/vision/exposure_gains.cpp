@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/geometry/statistics.h"
+#include "core/vision/clipped_planes.h"
 #include "core/vision/parallel.h"
 
 namespace skincal {
@@ -18,6 +19,7 @@ struct Witness {
     Eigen::Index spot = 0;
     double strongest = 0;  ///< of its light, but for the top tenth, which a flash may have
     double highest = 0;    ///< the same of its grey level
+    std::vector<std::uint8_t> isBlack;
 };
 
 /// What the spots that shine in a plane have of what they have at best, and of their level.
@@ -41,7 +43,7 @@ std::optional<Witness> witnessOf(const SpotSeries& series, Eigen::Index spot, do
         return std::nullopt;
     Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(spot) + series.around.col(spot);
     std::nth_element(values.begin(), high, values.end());
-    return Witness{spot, strongest, static_cast<double>(*high)};
+    return Witness{spot, strongest, static_cast<double>(*high), blackPlanes(series.around.col(spot))};
 }
 
 std::vector<Witness> witnessesIn(const SpotSeries& series, std::span<const double> sigma) {
@@ -69,12 +71,16 @@ std::vector<Witness> witnessesIn(const SpotSeries& series, std::span<const doubl
 std::optional<PlaneShare> shareIn(const SpotSeries& series, Eigen::Index plane, const std::vector<Witness>& witnesses,
                                   std::span<const double> sigma) {
     std::vector<std::pair<double, const Witness*>> shares;
+    std::size_t black = 0;
     for (const Witness& one : witnesses) {
         const auto light = static_cast<double>(series.light(plane, one.spot));
-        if (light > kStrong * sigma[static_cast<std::size_t>(one.spot)])
+        // What of it black ground swallows looks like a shorter exposure.
+        if (one.isBlack[static_cast<std::size_t>(plane)] != 0)
+            ++black;
+        else if (light > kStrong * sigma[static_cast<std::size_t>(one.spot)])
             shares.emplace_back(light / one.strongest, &one);
     }
-    if (shares.size() < kFewest)
+    if (shares.size() < kFewest || 2 * black > witnesses.size())
         return std::nullopt;
     const auto less = [](const auto& a, const auto& b) { return a.first < b.first; };
     const auto nearlyMost = shares.begin() + static_cast<std::ptrdiff_t>(9 * (shares.size() - 1) / 10);

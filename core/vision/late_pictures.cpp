@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <vector>
 
 namespace skincal {
@@ -53,24 +54,30 @@ bool agrees(const Series& isBright, const std::vector<AllAlike>& alike, int late
 }
 
 /// As it would be in time. The pictures that were not taken any more are as dark as the first.
-Eigen::VectorXd inTimeAgain(const Eigen::VectorXd& series, int late) {
-    Eigen::VectorXd shifted(series.size());
-    shifted << series.tail(series.size() - late), series.head(late);
-    return shifted;
+template <class Series>
+void bringInTime(Series&& series, int late) {
+    std::rotate(series.data(), series.data() + late, series.data() + series.size());
 }
 
-/// How many of these blink a word, so many pictures later; of very many only some are asked.
+/// How many words these blink, so many pictures later; of very many only some are asked. A lamp may shine on many spots
+/// as one word does, a camera that is late shows many words.
 double wordsIn(const SpotScan& scan, const WordMatcher& matcher, const std::vector<std::size_t>& spots, int late) {
     constexpr std::size_t kAsked = 100;
     const std::size_t step = spots.size() / kAsked + 1;
-    std::size_t found = 0;
+    std::set<std::size_t> words;
     for (std::size_t i = 0; i < spots.size(); i += step) {
-        const Eigen::VectorXd series = inTimeAgain(scan.levelled(spots[i]), late);
-        const SeriesMatch match =
-            matcher.match({series.data(), static_cast<std::size_t>(series.size())}, scan.sigma[spots[i]]);
-        found += match.verdict == SeriesVerdict::Matched ? 1 : 0;
+        Eigen::VectorXd series = scan.levelled(spots[i]);
+        Ambient ambient = scan.ambientOfSpot(spots[i]);
+        std::vector<std::uint8_t> bounds = scan.boundsOfSpot(spots[i]);
+        bringInTime(series, late);
+        bringInTime(ambient.light, late);
+        bringInTime(bounds, late);
+        const SeriesMatch match = matcher.match({series.data(), static_cast<std::size_t>(series.size())},
+                                                scan.sigma[spots[i]], ambient, bounds);
+        if (match.verdict == SeriesVerdict::Matched)
+            words.insert(match.words.front());
     }
-    return static_cast<double>(found * step);
+    return static_cast<double>(words.size() * step);
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ std::optional<std::vector<MatchedSpot>> matchCandidates(const SpotScan& scan, st
     std::vector<SeriesMatch> all(candidates.size());
     const bool isDone = forEach(candidates.size(), context, [&](std::size_t i) {
         const Eigen::VectorXd y = scan.levelled(i);
-        all[i] = matcher.match({y.data(), static_cast<std::size_t>(y.size())}, scan.sigma[i], scan.ambientOfSpot(i));
+        all[i] = matcher.match({y.data(), static_cast<std::size_t>(y.size())}, scan.sigma[i], scan.ambientOfSpot(i),
+                               scan.boundsOfSpot(i));
     });
     if (!isDone)
         return std::nullopt;

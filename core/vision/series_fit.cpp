@@ -19,11 +19,17 @@ Eigen::VectorXd offDrift(const Codebook& codebook, const Ambient& ambient, const
     return off;
 }
 
-SeriesFit::SeriesFit(const Codebook& codebook, const Eigen::VectorXd& y, double sigma, double strength,
-                     const Ambient& ambient, const WordMatchOptions& options)
-    : codebook_(codebook), ambient_(ambient), options_(options), y_(y), cameraSigma_(sigma) {
+SeriesFit::SeriesFit(const Codebook& codebook, const FittedSeries& series, const Ambient& ambient,
+                     const WordMatchOptions& options)
+    : codebook_(codebook),
+      ambient_(ambient),
+      options_(options),
+      y_(series.y),
+      atLeast_(series.atLeast),
+      cameraSigma_(series.sigma) {
+    const Eigen::VectorXd& y = series.y;
     const double spread = codebook.coloured ? options.colourSpread : options.brightnessSpread;
-    sigma_ = std::hypot(sigma, spread * strength);
+    sigma_ = std::hypot(series.sigma, spread * series.strength);
     baseCount_ = codebook.drift.cols() + (hasAmbient() ? 1 : 0);
     columns_.resize(y.size(), kMostUnknowns);
     columns_.leftCols(codebook.drift.cols()) = codebook.drift;
@@ -61,10 +67,12 @@ Explanation SeriesFit::explain(const std::vector<std::size_t>& words) {
     for (const std::size_t word : words)
         appendColumn(codebook_.lit[word]);
     // The best of two starts: plain least squares, and (for single words) levels that hidden planes don't move.
-    Explanation best = refine(words, std::vector<std::uint8_t>(codebook_.planes(), 1));
+    Explanation best = refineAll(words);
     if (words.size() == 1 && !best.isClean()) {
         std::vector<std::uint8_t> used(codebook_.planes());
-        (void)divide(residualsFromLevels(words[0]), used);
+        Eigen::VectorXd residuals = residualsFromLevels(words[0]);
+        meetBounds(residuals, met_);
+        (void)divide(residuals, used);
         Explanation other = refine(words, std::move(used));
         if (other.cost < best.cost)
             best = std::move(other);
@@ -136,7 +144,6 @@ bool SeriesFit::believable(const Explanation& e) const {
 
 double SeriesFit::costOfDarkness(const std::vector<std::uint8_t>& used) {
     double least = explain({}).cost;
-    const std::vector<std::uint8_t> all(codebook_.planes(), 1);
     std::vector<std::size_t> after;
     for (std::size_t k = used.size(); k-- > 1;) {
         after.push_back(k);
@@ -145,7 +152,7 @@ double SeriesFit::costOfDarkness(const std::vector<std::uint8_t>& used) {
             continue;
         count_ = baseCount_;
         appendColumn(after);
-        least = std::min(least, options_.outlier * options_.outlier + refine({}, all).cost);
+        least = std::min(least, options_.outlier * options_.outlier + refineAll({}).cost);
     }
     return least;
 }
@@ -236,11 +243,11 @@ double SeriesFit::costOfNothing() const {
 }
 
 /// Nothing where the planes can't tell the columns apart.
-std::optional<SeriesFit::Solution> SeriesFit::solve(const std::vector<std::uint8_t>& used) const {
+std::optional<SeriesFit::Solution> SeriesFit::solve(const std::vector<std::uint8_t>& fitted) const {
     UnknownsSquare N = N_.topLeftCorner(count_, count_);
     Unknowns moment = moment_.head(count_);
-    for (std::size_t plane = 0; plane < used.size(); ++plane) {
-        if (used[plane] != 0)
+    for (std::size_t plane = 0; plane < fitted.size(); ++plane) {
+        if (fitted[plane] != 0)
             continue;
         const auto k = static_cast<Eigen::Index>(plane);
         for (Eigen::Index i = 0; i < count_; ++i) {
@@ -281,13 +288,46 @@ void SeriesFit::setResiduals(const Solution& solution) {
         residuals_ -= values[j] * columns_.col(j);
 }
 
-/// Fits and drops disturbed planes in turn.
+void SeriesFit::meetBounds(Eigen::VectorXd& residuals, std::vector<std::uint8_t>& met) const {
+    met.assign(static_cast<std::size_t>(residuals.size()), 0);
+    for (std::size_t k = 0; k < atLeast_.size(); ++k) {
+        double& residual = residuals[static_cast<Eigen::Index>(k)];
+        // What is met by less than noise counts as a value: else none might be left that the words are fitted to.
+        if (atLeast_[k] == 0 || residual >= -sigma_)
+            continue;
+        residual = 0;
+        met[k] = 1;
+    }
+}
+
+/// From all planes. Low bounds, which are mostly met, count from the first on only where too little is left without:
+/// values that far from the truth would make others look disturbed. High ones are nearly as good as values.
+Explanation SeriesFit::refineAll(const std::vector<std::size_t>& words) {
+    const std::vector<std::uint8_t> all(codebook_.planes(), 1);
+    met_.assign(all.size(), 0);
+    if (!atLeast_.empty()) {
+        const double middle = y_.mean();
+        for (std::size_t k = 0; k < all.size(); ++k)
+            met_[k] = atLeast_[k] != 0 && y_[static_cast<Eigen::Index>(k)] < middle ? 1 : 0;
+    }
+    const bool isBounded = std::find(met_.begin(), met_.end(), 1) != met_.end();
+    Explanation e = refine(words, all);
+    if (!isBounded || std::isfinite(e.cost))
+        return e;
+    met_.assign(all.size(), 0);
+    return refine(words, all);
+}
+
+/// Fits and drops disturbed planes, and bounds that are met (from the present ones on), in turn.
 Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector<std::uint8_t> used) {
     Explanation e;
     e.words = words;
     next_.resize(used.size());
     for (int iteration = 1; iteration <= options_.maxIterations; ++iteration) {
-        const auto solution = solve(used);
+        fitted_ = used;
+        for (std::size_t k = 0; k < used.size(); ++k)
+            fitted_[k] = met_[k] != 0 ? 0 : used[k];
+        const auto solution = solve(fitted_);
         if (!solution) {
             // So few planes are left that nothing is known: as if all of them were disturbed.
             if (words.empty())
@@ -297,9 +337,11 @@ Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector
         setResiduals(*solution);
         if (hasAmbient())
             e.ambient = solution->values[baseCount_ - 1];
+        meetBounds(residuals_, nextMet_);
         const double cost = divide(residuals_, next_) + ridge() * std::pow(e.ambient / sigma_, 2);
-        const bool settled = next_ == used;
+        const bool settled = next_ == used && nextMet_ == met_;
         std::swap(used, next_);
+        std::swap(met_, nextMet_);
         if (!settled && iteration < options_.maxIterations)
             continue;
         e.amplitudes = solution->values.tail(static_cast<Eigen::Index>(words.size()));
@@ -323,16 +365,16 @@ void SeriesFit::judge(const Solution& solution, bool settled, Explanation& e) co
     // over which the words need not even be separable. Its cost is a cost all the same, which others must beat.
     e.significant = settled && (e.amplitudes.array() > options_.minSignificance * sigmas.array()).all();
     double left = 0;
+    double freedom = -static_cast<double>(count_);
     for (std::size_t k = 0; k < e.used.size(); ++k) {
         if (e.used[k] != 0) {
             left += std::pow(residuals_[static_cast<Eigen::Index>(k)], 2);
+            freedom += met_[k] != 0 ? 0 : 1;
         } else {
             ++e.disturbed;
             e.runs += k == 0 || e.used[k - 1] != 0 ? 1U : 0U;
         }
     }
-    const double freedom =
-        static_cast<double>(e.used.size()) - static_cast<double>(e.disturbed) - static_cast<double>(count_);
     e.reducedCost = freedom > 0 ? left / (sigma_ * sigma_) / freedom : 0.0;
     if (words > 0) {
         // What the sum of squares falls by where the words are let in.

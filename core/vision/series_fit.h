@@ -41,12 +41,18 @@ struct Explanation {
 /// What of a series neither drift nor ambient explains.
 [[nodiscard]] Eigen::VectorXd offDrift(const Codebook& codebook, const Ambient& ambient, const Eigen::VectorXd& y);
 
-/// Fits words to one series, see WordMatcher; the codebook, the ambient and the options must outlive it.
+/// What is to be explained.
+struct FittedSeries {
+    const Eigen::VectorXd& y;               ///< per plane, grey levels
+    double sigma = 1;                       ///< of a value, from camera noise alone
+    double strength = 0;                    ///< of the LED, about: how evenly it shines counts as noise
+    std::span<const std::uint8_t> atLeast;  ///< per plane, 1 where the value is a lower bound; empty where none is
+};
+
+/// Fits words to one series, see WordMatcher; the codebook, the series, the ambient and the options must outlive it.
 class SeriesFit {
   public:
-    /// @param sigma     of a value, from camera noise alone
-    /// @param strength  of the LED, about: how evenly it shines counts as noise
-    SeriesFit(const Codebook& codebook, const Eigen::VectorXd& y, double sigma, double strength, const Ambient& ambient,
+    SeriesFit(const Codebook& codebook, const FittedSeries& series, const Ambient& ambient,
               const WordMatchOptions& options);
 
     /// @param words  none, one or two
@@ -65,9 +71,13 @@ class SeriesFit {
         double drifted = 0;  ///< what the first of the drift is less where the ambient is off its mean over all planes
     };
 
+    [[nodiscard]] Explanation refineAll(const std::vector<std::size_t>& words);
     [[nodiscard]] Explanation refine(const std::vector<std::size_t>& words, std::vector<std::uint8_t> used);
     void appendColumn(std::span<const std::size_t> planes);
-    [[nodiscard]] std::optional<Solution> solve(const std::vector<std::uint8_t>& used) const;
+    /// @param fitted  planes that count
+    [[nodiscard]] std::optional<Solution> solve(const std::vector<std::uint8_t>& fitted) const;
+    /// Sets residuals to zero where a bound is met.
+    void meetBounds(Eigen::VectorXd& residuals, std::vector<std::uint8_t>& met) const;
     void judge(const Solution& solution, bool settled, Explanation& e) const;
     void setResiduals(const Solution& solution);
     [[nodiscard]] double costOfNothing() const;
@@ -82,7 +92,8 @@ class SeriesFit {
     const Codebook& codebook_;
     const Ambient& ambient_;
     const WordMatchOptions& options_;
-    Eigen::VectorXd y_;
+    const Eigen::VectorXd& y_;
+    std::span<const std::uint8_t> atLeast_;
     double cameraSigma_;
     double sigma_;  ///< with the uneven brightness of the LEDs
     // Planes x unknowns: drift, ambient off its mean, and then the columns of what is being fitted.
@@ -95,6 +106,9 @@ class SeriesFit {
     // Kept from one use to the next, so as not to be allocated each time.
     Eigen::VectorXd residuals_;
     std::vector<std::uint8_t> next_;
+    std::vector<std::uint8_t> fitted_;
+    std::vector<std::uint8_t> met_;
+    std::vector<std::uint8_t> nextMet_;
     std::vector<std::array<std::uint8_t, 2>> from_;
 };
 

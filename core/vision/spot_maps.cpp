@@ -1,9 +1,26 @@
 #include "core/vision/spot_maps.h"
 
+#include "core/vision/clipped_planes.h"
 #include "core/vision/neighbourhood.h"
 #include "core/vision/parallel.h"
 
 namespace skincal {
+namespace {
+
+/// The used planes without those whose ground is black, which swallows some of the light, where the words can still be
+/// told apart.
+std::vector<std::uint8_t> wholePlanes(const Codebook& codebook, const SeriesMatch& match,
+                                      const Eigen::VectorXf& around) {
+    const std::vector<std::uint8_t> black = blackPlanes(around);
+    std::vector<std::uint8_t> whole = match.used;
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+        if (black[k] != 0)
+            whole[k] = 0;
+    }
+    return whole == match.used || amplitudeWeights(codebook, match.words, whole).size() == 0 ? match.used : whole;
+}
+
+}  // namespace
 
 void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& options, std::vector<MatchedSpot>& matches,
                  ScanMotion& motion) {
@@ -14,8 +31,8 @@ void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& opti
     const auto filterOf = [&](const MatchedSpot& match, std::size_t j, const std::vector<std::size_t>& around) {
         LightFilter filter;
         filter.words = {match.series.words[j]};
-        filter.used = match.series.used;
         filter.around = scan.series.around.col(static_cast<Eigen::Index>(match.candidate));
+        filter.used = wholePlanes(scan.codebook, match.series, filter.around);
         filter.gains = scan.gains;
         filter.sigma = scan.sigma[match.candidate];
         filter.shared = sharesSpot(match.series, j);

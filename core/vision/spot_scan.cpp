@@ -1,6 +1,7 @@
 #include "core/vision/spot_scan.h"
 
 #include "core/geometry/statistics.h"
+#include "core/vision/clipped_planes.h"
 #include "core/vision/exposure_gains.h"
 #include "core/vision/surroundings.h"
 
@@ -38,6 +39,11 @@ Eigen::VectorXd SpotScan::levelled(std::size_t candidate) const {
 
 Ambient SpotScan::ambientOfSpot(std::size_t candidate) const {
     return ambientOf(codebook, series.around.col(static_cast<Eigen::Index>(candidate)), gains, sigma[candidate]);
+}
+
+std::vector<std::uint8_t> SpotScan::boundsOfSpot(std::size_t candidate) const {
+    const auto spot = static_cast<Eigen::Index>(candidate);
+    return atLeastPlanes(series.isFull.col(spot), series.around.col(spot));
 }
 
 }  // namespace skincal

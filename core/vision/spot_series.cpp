@@ -11,6 +11,7 @@ namespace skincal {
 namespace {
 
 constexpr int kCore = 2;
+constexpr int kMiddle = 1;
 // exp(-r^2 / 2 s^2) with s = 1.2 at r = 0, 1, 2.
 constexpr std::array<double, 3> kTap{1.0, 0.70665, 0.24935};
 constexpr int kLargestRadius = 30;
@@ -128,7 +129,8 @@ SpotSeries::SpotSeries(std::size_t planes, std::size_t spots)
     : light(static_cast<Eigen::Index>(planes), static_cast<Eigen::Index>(spots)),
       around(light.rows(), light.cols()),
       level(Eigen::VectorXd::Zero(light.cols())),
-      clipped(spots, 0) {}
+      clipped(spots, 0),
+      isFull(Eigen::Array<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic>::Zero(light.rows(), light.cols())) {}
 
 void SpotSeries::read(const FramePixels& frame, std::span<const SpotCandidate> spots, int radius, std::size_t plane,
                       int channel) {
@@ -140,6 +142,7 @@ void SpotSeries::read(const FramePixels& frame, std::span<const SpotCandidate> s
             around(row, i) = static_cast<float>(read.around);
             level[i] = std::max(level[i], read.level);
             const auto spot = static_cast<std::size_t>(i);
+            isFull(row, i) = isClippedNear(frame, spots[spot], kMiddle, channel) ? 1 : 0;
             if (clipped[spot] == 0 && isClippedNear(frame, spots[spot], radius, channel))
                 clipped[spot] = 1;
         }

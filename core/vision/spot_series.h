@@ -26,7 +26,7 @@ struct SpotBrightness {
 /// Variance of SpotBrightness::around from camera noise.
 [[nodiscard]] double surroundingsVariance(const ImageNoise& noise, double around, int radius);
 
-/// True where any pixel of the spot's window is clipped.
+/// True where any pixel within `radius` of the spot is clipped.
 [[nodiscard]] bool isClippedNear(const FramePixels& frame, const SpotCandidate& spot, int radius, int channel);
 
 /// How spots go through the planes of a view.
@@ -35,6 +35,8 @@ struct SpotSeries {
     Eigen::MatrixXf around;             ///< planes x spots, SpotBrightness::around
     Eigen::VectorXd level;              ///< per spot, SpotBrightness::level at its highest
     std::vector<std::uint8_t> clipped;  ///< per spot, 1 where a pixel of its window is clipped in any plane
+    /// Planes x spots, 1 where a pixel next to the spot's middle is clipped: its light is that much, or more.
+    Eigen::Array<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic> isFull;
 
     SpotSeries(std::size_t planes, std::size_t spots);
     /// One plane of all spots.

@@ -147,8 +147,9 @@ WordMatcher::WordMatcher(const Codebook& codebook, const WordMatchOptions& optio
         throw std::logic_error("WordMatcher: options out of range");
 }
 
-SeriesMatch WordMatcher::match(std::span<const double> series, double sigma, const Ambient& ambient) const {
-    if (series.size() != codebook_.planes() || !(sigma > 0) ||
+SeriesMatch WordMatcher::match(std::span<const double> series, double sigma, const Ambient& ambient,
+                               std::span<const std::uint8_t> atLeast) const {
+    if (series.size() != codebook_.planes() || !(sigma > 0) || (!atLeast.empty() && atLeast.size() != series.size()) ||
         (ambient.light.size() > 0 && ambient.light.size() != codebook_.drift.rows()))
         throw std::logic_error("WordMatcher: the series does not belong to this codebook");
 
@@ -160,7 +161,7 @@ SeriesMatch WordMatcher::match(std::span<const double> series, double sigma, con
         return {};
     const RankedWord& lead = ranked.front();
     const double strength = std::sqrt(lead.score / codebook_.energy[lead.word]);
-    SeriesFit fit(codebook_, y, sigma, strength, ambient, options_);
+    SeriesFit fit(codebook_, {y, sigma, strength, atLeast}, ambient, options_);
     Contest contest(codebook_, options_, fit);
     contest.enterLeaders(ranked);
     // What hides an LED for long also hides its word from a ranking over all planes: once more over those that remain.

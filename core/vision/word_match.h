@@ -53,9 +53,11 @@ struct SeriesMatch {
 /// walks past a run of them, but not the decision. The likelihoods of the best and the second-best explanation (no
 /// light at all included) must differ by `minMargin`. One-at-a-time words have a single lit plane and hence no
 /// redundancy: there a flash exactly in that frame looks like the LED; the shape of the spot has to decide.
+/// A plane that is known to have its light or more (a clipped LED under a lamp has as much as the lamp leaves) costs
+/// nothing where the model is above it.
 /// The words of a Matched series can be separated over its `used` planes (amplitudeWeights is not empty) and its
-/// amplitudes are the least-squares ones there (with `ambient`, but for its prior): an explanation whose planes keep
-/// coming and going counts as a rival, but never as the answer.
+/// amplitudes are the least-squares ones there (with `ambient`, but for its prior, and without bounds that are met): an
+/// explanation whose planes keep coming and going counts as a rival, but never as the answer.
 class WordMatcher {
   public:
     /// The codebook must outlive it. Throws std::logic_error on bad options.
@@ -64,8 +66,10 @@ class WordMatcher {
     /// @param series   one value per plane of the codebook, grey levels
     /// @param sigma    standard deviation of a value from camera noise alone, > 0
     /// @param ambient  of the spot, where it is known
+    /// @param atLeast  per plane, 1 where the value is a lower bound; empty where none is
     /// Throws std::logic_error on a size mismatch.
-    [[nodiscard]] SeriesMatch match(std::span<const double> series, double sigma, const Ambient& ambient = {}) const;
+    [[nodiscard]] SeriesMatch match(std::span<const double> series, double sigma, const Ambient& ambient = {},
+                                    std::span<const std::uint8_t> atLeast = {}) const;
 
   private:
     const Codebook& codebook_;

@@ -81,6 +81,17 @@ TEST(LatePictures, WhatElseIsInAPictureDoesNotMakeItLate) {
     }
 }
 
+TEST(LatePictures, ManySpotsThatBlinkOneWordAreALampsAndNotLate) {
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        constexpr Eigen::Index kOwn = 6;
+        SpotScan scan = scanOf(kOwn, 0, 2, seed, 300);
+        const SpotScan late = scanOf(kOwn, 1, 2, seed);
+        for (Eigen::Index spot = kOwn; spot < scan.series.light.cols(); ++spot)
+            scan.series.light.col(spot) = late.series.light.col(0);
+        EXPECT_EQ(picturesLate(scan, wordsIn(scan)), std::nullopt) << seed;
+    }
+}
+
 // Half of the spots end in the middle, and as many begin there.
 TEST(LatePictures, AKnockIsNoLateness) {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {

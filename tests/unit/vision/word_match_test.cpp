@@ -289,6 +289,7 @@ TEST(WordMatching, MisuseThrows) {
     const std::vector<double> y(scan.frames.size(), 0.0);
     EXPECT_THROW((void)WordMatcher(scan.book).match(std::vector<double>(3, 0.0), 1), std::logic_error);
     EXPECT_THROW((void)WordMatcher(scan.book).match(y, 0), std::logic_error);
+    EXPECT_THROW((void)WordMatcher(scan.book).match(y, 1, {}, std::vector<std::uint8_t>(3, 0)), std::logic_error);
     WordMatchOptions options;
     options.shortlist = 1;
     EXPECT_THROW((void)WordMatcher(scan.book, options).match(y, 1), std::logic_error);

@@ -17,7 +17,8 @@ constexpr std::size_t kFewest = 3;
 /// A spot that tells of the exposure.
 struct Witness {
     Eigen::Index spot = 0;
-    double strongest = 0;  ///< of its light, but for the top tenth, which a flash may have
+    float ground = 0;      ///< brighter than its surroundings without its LED, over their level
+    double strongest = 0;  ///< of its LED's light, but for the top tenth, which a flash may have
     double highest = 0;    ///< the same of its grey level
     std::vector<std::uint8_t> isBlack;
 };
@@ -28,22 +29,43 @@ struct PlaneShare {
     double level = 1;
 };
 
-std::optional<Witness> witnessOf(const SpotSeries& series, Eigen::Index spot, double sigma) {
-    constexpr double kGround = 0.4;
-    const Eigen::Index planes = series.light.rows();
-    std::vector<float> values(static_cast<std::size_t>(planes));
-    Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(spot);
+/// The value that nine tenths of them stay below, or one tenth.
+double highOf(std::vector<float>& values) {
     const auto high = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
     std::nth_element(values.begin(), high, values.end());
+    return static_cast<double>(*high);
+}
+double lowOf(std::vector<float>& values) {
     const auto low = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 10);
-    std::nth_element(values.begin(), low, high);
-    const auto strongest = static_cast<double>(*high);
-    // A spot on ground that is brighter than its surroundings looks lit at a shorter exposure where it is dark.
-    if (!(strongest > kStrong * sigma) || !(static_cast<double>(*low) < kGround * strongest))
+    std::nth_element(values.begin(), low, values.end());
+    return static_cast<double>(*low);
+}
+
+/// How much brighter than its surroundings a spot is while its LED is dark, over their level.
+float groundOf(const SpotSeries& series, Eigen::Index spot, std::vector<float>& values) {
+    constexpr float kDark = 8;  // what is darker has no ground to speak of
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const auto plane = static_cast<Eigen::Index>(k);
+        values[k] = series.light(plane, spot) / std::max(kDark, series.around(plane, spot));
+    }
+    return static_cast<float>(std::max(0.0, lowOf(values)));
+}
+
+std::optional<Witness> witnessOf(const SpotSeries& series, Eigen::Index spot, double sigma) {
+    const Eigen::Index planes = series.light.rows();
+    std::vector<float> values(static_cast<std::size_t>(planes));
+    Witness witness;
+    witness.spot = spot;
+    witness.ground = groundOf(series, spot, values);
+    Eigen::Map<Eigen::VectorXf> each(values.data(), planes);
+    each = series.light.col(spot) - witness.ground * series.around.col(spot);
+    witness.strongest = highOf(values);
+    if (!(witness.strongest > kStrong * sigma))
         return std::nullopt;
-    Eigen::Map<Eigen::VectorXf>(values.data(), planes) = series.light.col(spot) + series.around.col(spot);
-    std::nth_element(values.begin(), high, values.end());
-    return Witness{spot, strongest, static_cast<double>(*high), blackPlanes(series.around.col(spot))};
+    each = series.light.col(spot) + series.around.col(spot);
+    witness.highest = highOf(values);
+    witness.isBlack = blackPlanes(series.around.col(spot));
+    return witness;
 }
 
 std::vector<Witness> witnessesIn(const SpotSeries& series, std::span<const double> sigma) {
@@ -59,10 +81,13 @@ std::vector<Witness> witnessesIn(const SpotSeries& series, std::span<const doubl
         }
     }
     // Skirts and reflections shine with several LEDs at once, and tell nothing.
-    constexpr double kOfStrong = 0.2;
+    constexpr double kOfStrong = 0.4;
     if (sorted.empty())
         return witnesses;
-    const auto nearlyMost = sorted.begin() + static_cast<std::ptrdiff_t>(9 * (sorted.size() - 1) / 10);
+    // Of all that blinks a tenth may be LEDs, or far less where the ground is patterned.
+    constexpr std::size_t kStrongest = 10;
+    const auto nearlyMost =
+        sorted.end() - 1 - static_cast<std::ptrdiff_t>(std::min(kStrongest, (sorted.size() - 1) / 10));
     std::nth_element(sorted.begin(), nearlyMost, sorted.end());
     std::erase_if(witnesses, [&](const Witness& one) { return one.strongest < kOfStrong * *nearlyMost; });
     return witnesses;
@@ -73,7 +98,10 @@ std::optional<PlaneShare> shareIn(const SpotSeries& series, Eigen::Index plane, 
     std::vector<std::pair<double, const Witness*>> shares;
     std::size_t black = 0;
     for (const Witness& one : witnesses) {
-        const auto light = static_cast<double>(series.light(plane, one.spot));
+        auto light = static_cast<double>(series.light(plane, one.spot) - one.ground * series.around(plane, one.spot));
+        // Clipped it may have as much as ever, however little of its range the sun leaves to it.
+        if (series.isFull(plane, one.spot) != 0)
+            light = std::max(light, one.strongest);
         // What of it black ground swallows looks like a shorter exposure.
         if (one.isBlack[static_cast<std::size_t>(plane)] != 0)
             ++black;

@@ -56,7 +56,8 @@ bool agrees(const Series& isBright, const std::vector<AllAlike>& alike, int late
 /// As it would be in time. The pictures that were not taken any more are as dark as the first.
 template <class Series>
 void bringInTime(Series&& series, int late) {
-    std::rotate(series.data(), series.data() + late, series.data() + series.size());
+    if (series.size() > 0)
+        std::rotate(series.data(), series.data() + late, series.data() + series.size());
 }
 
 /// How many words these blink, so many pictures later; of very many only some are asked. A lamp may shine on many spots

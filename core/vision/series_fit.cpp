@@ -300,22 +300,33 @@ void SeriesFit::meetBounds(Eigen::VectorXd& residuals, std::vector<std::uint8_t>
     }
 }
 
-/// From all planes. Low bounds, which are mostly met, count from the first on only where too little is left without:
-/// values that far from the truth would make others look disturbed. High ones are nearly as good as values.
+/// From plain least squares over all planes, bounds met: before that, values far from the truth would make others look
+/// disturbed.
 Explanation SeriesFit::refineAll(const std::vector<std::size_t>& words) {
+    constexpr int kMostSteps = 20;
     const std::vector<std::uint8_t> all(codebook_.planes(), 1);
     met_.assign(all.size(), 0);
-    if (!atLeast_.empty()) {
-        const double middle = y_.mean();
-        for (std::size_t k = 0; k < all.size(); ++k)
-            met_[k] = atLeast_[k] != 0 && y_[static_cast<Eigen::Index>(k)] < middle ? 1 : 0;
+    for (int step = 0; step < kMostSteps && !atLeast_.empty(); ++step) {
+        const auto solution = solve(fittedOf(all));
+        if (!solution) {
+            met_.assign(all.size(), 0);
+            break;
+        }
+        setResiduals(*solution);
+        meetBounds(residuals_, nextMet_);
+        std::swap(met_, nextMet_);
+        if (met_ == nextMet_)
+            break;
     }
-    const bool isBounded = std::find(met_.begin(), met_.end(), 1) != met_.end();
-    Explanation e = refine(words, all);
-    if (!isBounded || std::isfinite(e.cost))
-        return e;
-    met_.assign(all.size(), 0);
     return refine(words, all);
+}
+
+/// The used planes without bounds that are met.
+const std::vector<std::uint8_t>& SeriesFit::fittedOf(const std::vector<std::uint8_t>& used) {
+    fitted_ = used;
+    for (std::size_t k = 0; k < used.size(); ++k)
+        fitted_[k] = met_[k] != 0 ? 0 : used[k];
+    return fitted_;
 }
 
 /// Fits and drops disturbed planes, and bounds that are met (from the present ones on), in turn.
@@ -324,10 +335,7 @@ Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector
     e.words = words;
     next_.resize(used.size());
     for (int iteration = 1; iteration <= options_.maxIterations; ++iteration) {
-        fitted_ = used;
-        for (std::size_t k = 0; k < used.size(); ++k)
-            fitted_[k] = met_[k] != 0 ? 0 : used[k];
-        const auto solution = solve(fitted_);
+        const auto solution = solve(fittedOf(used));
         if (!solution) {
             // So few planes are left that nothing is known: as if all of them were disturbed.
             if (words.empty())

@@ -72,6 +72,7 @@ class SeriesFit {
     };
 
     [[nodiscard]] Explanation refineAll(const std::vector<std::size_t>& words);
+    [[nodiscard]] const std::vector<std::uint8_t>& fittedOf(const std::vector<std::uint8_t>& used);
     [[nodiscard]] Explanation refine(const std::vector<std::size_t>& words, std::vector<std::uint8_t> used);
     void appendColumn(std::span<const std::size_t> planes);
     /// @param fitted  planes that count

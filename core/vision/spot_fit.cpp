@@ -56,6 +56,22 @@ std::optional<SpotParameters> startOf(const SpotWindow& window, const SpotPrior&
     return start;
 }
 
+/// Where the middle is clipped, a narrow core with a strong halo may look much like a wide core without: a fit that
+/// ends up at an unusual width is tried from the usual one, too.
+SpotModel::Normals minimised(const SpotModel& model, const SpotPrior& prior, SpotParameters& parameters) {
+    SpotParameters usual = parameters;
+    SpotModel::Normals least = model.minimise(parameters);
+    if (std::abs(parameters[3] - prior.logWidth) <= prior.logWidthSigma)
+        return least;
+    usual[3] = prior.logWidth;
+    const SpotModel::Normals other = model.minimise(usual);
+    if (other.cost < least.cost) {
+        parameters = usual;
+        least = other;
+    }
+    return least;
+}
+
 }  // namespace
 
 Sentence sentenceOf(SpotFitError error) {
@@ -97,7 +113,7 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
         return tl::unexpected(SpotFitError::NoLight);
 
     const SpotModel model(window, options.prior, options.haloWidth);
-    const SpotModel::Normals normals = model.minimise(*parameters);
+    const SpotModel::Normals normals = minimised(model, options.prior, *parameters);
     if (!parameters->allFinite() || !normals.N.allFinite() || !std::isfinite(normals.cost))
         return tl::unexpected(SpotFitError::WrongShape);
 
@@ -112,12 +128,17 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
         return tl::unexpected(SpotFitError::WrongShape);
     const Matrix6d covariance = factor.solve(Matrix6d::Identity());
     const double chi2 = normals.misfit / std::max(1.0, normals.informative - 6.0);
-    // Of a clipped spot the amplitude is an extrapolation; that there is light needs no proof.
-    if (clipped == 0 && !(covariance(2, 2) * std::max(1.0, chi2) <= std::pow(options.minSignificance, -2)))
+    const SpotModel::Explained explained = model.explained(*parameters);
+    // Of a clipped spot, and one whose middle is blind, the amplitude is an extrapolation. That there is light in the
+    // one needs no proof; in the other the rim has to show it.
+    const double squaredSignificance = (window.state == PixelState::Excluded).any()
+                                           ? explained.gain / std::max(1.0, chi2)
+                                           : 1 / (covariance(2, 2) * std::max(1.0, chi2));
+    if (clipped == 0 && !(squaredSignificance >= std::pow(options.minSignificance, 2)))
         return tl::unexpected(SpotFitError::NoLight);
     const double width = std::exp((*parameters)[3]);
     if (!(width >= options.minWidth_px && width <= options.maxWidth_px) ||
-        (chi2 > options.maxReducedChi2 && model.explainedShare(*parameters) < options.minExplained))
+        (chi2 > options.maxReducedChi2 && explained.share < options.minExplained))
         return tl::unexpected(SpotFitError::WrongShape);
 
     SpotFit fit;

@@ -134,7 +134,7 @@ SpotModel::Normals SpotModel::at(const SpotParameters& p) const {
     return normals;
 }
 
-double SpotModel::explainedShare(const SpotParameters& p) const {
+SpotModel::Explained SpotModel::explained(const SpotParameters& p) const {
     const auto eachGood = [&](const auto& visit) {
         for (Eigen::Index col = 0; col < window_.value.cols(); ++col) {
             for (Eigen::Index row = 0; row < window_.value.rows(); ++row) {
@@ -163,7 +163,7 @@ double SpotModel::explainedShare(const SpotParameters& p) const {
         const double light = amplitude * (std::exp(-r2) + p[5] * std::exp(-r2 / (haloWidth_ * haloWidth_)));
         met += weight * std::pow(p[4] + light - value, 2);
     });
-    return total > 0 ? 1 - met / total : 0.0;
+    return {total - met, total > 0 ? 1 - met / total : 0.0};
 }
 
 SpotModel::Normals SpotModel::minimise(SpotParameters& p) const {

@@ -28,8 +28,12 @@ class SpotModel {
     SpotModel(const SpotWindow& window, const SpotPrior& prior, double haloWidth);
 
     [[nodiscard]] Normals at(const SpotParameters& p) const;
-    /// Share of the light's variation, clipped pixels left out, that the model explains.
-    [[nodiscard]] double explainedShare(const SpotParameters& p) const;
+    /// What of the light's variation, clipped pixels left out, the model explains.
+    struct Explained {
+        double gain = 0;   ///< by how much the misfit is less than that of even light, over the noise squared
+        double share = 0;  ///< of the variation
+    };
+    [[nodiscard]] Explained explained(const SpotParameters& p) const;
     /// Least cost by Levenberg-Marquardt, until a step moves nothing by a hundredth of its standard deviation.
     [[nodiscard]] Normals minimise(SpotParameters& p) const;
 

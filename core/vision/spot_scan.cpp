@@ -1,5 +1,7 @@
 #include "core/vision/spot_scan.h"
 
+#include <algorithm>
+
 #include "core/geometry/statistics.h"
 #include "core/vision/clipped_planes.h"
 #include "core/vision/exposure_gains.h"
@@ -43,7 +45,10 @@ Ambient SpotScan::ambientOfSpot(std::size_t candidate) const {
 
 std::vector<std::uint8_t> SpotScan::boundsOfSpot(std::size_t candidate) const {
     const auto spot = static_cast<Eigen::Index>(candidate);
-    return atLeastPlanes(series.isFull.col(spot), series.around.col(spot));
+    std::vector<std::uint8_t> bounds = atLeastPlanes(series.isFull.col(spot), series.around.col(spot));
+    if (std::find(bounds.begin(), bounds.end(), 1) == bounds.end())
+        bounds.clear();
+    return bounds;
 }
 
 }  // namespace skincal

@@ -20,7 +20,8 @@ struct SpotScan {
     /// A candidate's series as if the exposure had not changed.
     [[nodiscard]] Eigen::VectorXd levelled(std::size_t candidate) const;
     [[nodiscard]] Ambient ambientOfSpot(std::size_t candidate) const;
-    /// Planes in which a candidate has its light or more, as what it adds is cut off (atLeastPlanes).
+    /// Planes in which a candidate has its light or more, as what it adds is cut off (atLeastPlanes); empty where
+    /// there are none.
     [[nodiscard]] std::vector<std::uint8_t> boundsOfSpot(std::size_t candidate) const;
 };
 

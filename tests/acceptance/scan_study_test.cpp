@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Expectation{Disturbance::None, 0, 0.995}, Expectation{Disturbance::Ambient, 200, 0.995},
                       Expectation{Disturbance::Reflection, 0.3, 0.995}, Expectation{Disturbance::Screen, 250, 0.995},
                       Expectation{Disturbance::Mains50, 100, 0.995}, Expectation{Disturbance::Mains60, 100, 0.995},
-                      Expectation{Disturbance::Sun, 1, 0.995}, Expectation{Disturbance::Person, 1, 0.995},
+                      Expectation{Disturbance::Sun, 2, 0.995}, Expectation{Disturbance::Person, 1, 0.995},
                       Expectation{Disturbance::Exposure, 0.7, 0.995}, Expectation{Disturbance::Crowding, 4, 0.995}),
     [](const auto& what) { return std::string(name(what.param.disturbance)); });
 
@@ -120,9 +120,7 @@ TEST(ScanStudy, SomebodyWhoWalksPastIsNobodysLed) {
 }
 
 TEST(ScanStudy, WhatCannotBeSeenIsNotFoundElsewhere) {
-    for (const auto& [disturbance, strongest] :
-         {std::pair(Disturbance::Ambient, 300.0), std::pair(Disturbance::Sun, 2.0)})
-        EXPECT_EQ(scoreUpTo(disturbance, strongest).wrong, 0U) << name(disturbance);
+    EXPECT_EQ(scoreUpTo(Disturbance::Ambient, 300).wrong, 0U);
 }
 
 // Seeds in which lamps that go black between their flashes were once taken for other modules, or for a camera that is

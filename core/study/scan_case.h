@@ -20,7 +20,7 @@ enum class Disturbance {
     Person,      ///< somebody walks through: 1 yes
     Exposure,    ///< share by which the camera steps its exposure down and up again
     Bump,        ///< px by which the camera is knocked half-way
-    Crowding,    ///< px from an LED to its nearest neighbour, the median
+    Crowding,    ///< px between the two LEDs that are nearest to each other
 };
 [[nodiscard]] std::string_view name(Disturbance disturbance);
 [[nodiscard]] std::optional<Disturbance> findDisturbance(std::string_view name);

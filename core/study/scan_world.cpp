@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/geometry/random.h"
-#include "core/geometry/statistics.h"
 
 namespace skincal {
 namespace {
@@ -137,7 +136,7 @@ World laidOut(const ScanCase& what, std::uint64_t seed, double widest) {
     return world;
 }
 
-/// From an LED to the nearest other in the picture, the median.
+/// From any LED to the nearest other in the picture.
 double spacing_px(const World& world) {
     std::vector<Vector2d> pixels;
     for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
@@ -145,14 +144,12 @@ double spacing_px(const World& world) {
         if (const auto pixel = world.scenario.camera.project(led_v))
             pixels.push_back(*pixel);
     }
-    std::vector<double> nearest(pixels.size(), std::numeric_limits<double>::max());
+    double nearest = std::numeric_limits<double>::max();
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        for (std::size_t j = 0; j < pixels.size(); ++j) {
-            if (i != j)
-                nearest[i] = std::min(nearest[i], (pixels[i] - pixels[j]).norm());
-        }
+        for (std::size_t j = 0; j < i; ++j)
+            nearest = std::min(nearest, (pixels[i] - pixels[j]).norm());
     }
-    return median(std::move(nearest));
+    return nearest;
 }
 
 }  // namespace

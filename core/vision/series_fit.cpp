@@ -21,12 +21,11 @@ Eigen::VectorXd offDrift(const Codebook& codebook, const Ambient& ambient, const
 
 SeriesFit::SeriesFit(const Codebook& codebook, const FittedSeries& series, const Ambient& ambient,
                      const WordMatchOptions& options)
-    : codebook_(codebook),
-      ambient_(ambient),
-      options_(options),
-      y_(series.y),
-      atLeast_(series.atLeast),
-      cameraSigma_(series.sigma) {
+    : codebook_(codebook), ambient_(ambient), options_(options), y_(series.y), cameraSigma_(series.sigma) {
+    for (std::size_t k = 0; k < series.atLeast.size(); ++k) {
+        if (series.atLeast[k] != 0)
+            bounds_.push_back(k);
+    }
     const Eigen::VectorXd& y = series.y;
     const double spread = codebook.coloured ? options.colourSpread : options.brightnessSpread;
     sigma_ = std::hypot(series.sigma, spread * series.strength);
@@ -67,7 +66,7 @@ Explanation SeriesFit::explain(const std::vector<std::size_t>& words) {
     for (const std::size_t word : words)
         appendColumn(codebook_.lit[word]);
     // The best of two starts: plain least squares, and (for single words) levels that hidden planes don't move.
-    Explanation best = refineAll(words);
+    Explanation best = refine(words, std::vector<std::uint8_t>(codebook_.planes(), 1));
     if (words.size() == 1 && !best.isClean()) {
         std::vector<std::uint8_t> used(codebook_.planes());
         Eigen::VectorXd residuals = residualsFromLevels(words[0]);
@@ -144,6 +143,7 @@ bool SeriesFit::believable(const Explanation& e) const {
 
 double SeriesFit::costOfDarkness(const std::vector<std::uint8_t>& used) {
     double least = explain({}).cost;
+    const std::vector<std::uint8_t> all(codebook_.planes(), 1);
     std::vector<std::size_t> after;
     for (std::size_t k = used.size(); k-- > 1;) {
         after.push_back(k);
@@ -152,7 +152,7 @@ double SeriesFit::costOfDarkness(const std::vector<std::uint8_t>& used) {
             continue;
         count_ = baseCount_;
         appendColumn(after);
-        least = std::min(least, options_.outlier * options_.outlier + refineAll({}).cost);
+        least = std::min(least, options_.outlier * options_.outlier + refine({}, all).cost);
     }
     return least;
 }
@@ -290,52 +290,41 @@ void SeriesFit::setResiduals(const Solution& solution) {
 
 void SeriesFit::meetBounds(Eigen::VectorXd& residuals, std::vector<std::uint8_t>& met) const {
     met.assign(static_cast<std::size_t>(residuals.size()), 0);
-    for (std::size_t k = 0; k < atLeast_.size(); ++k) {
+    for (const std::size_t k : bounds_) {
         double& residual = residuals[static_cast<Eigen::Index>(k)];
         // What is met by less than noise counts as a value: else none might be left that the words are fitted to.
-        if (atLeast_[k] == 0 || residual >= -sigma_)
+        if (residual >= -sigma_)
             continue;
         residual = 0;
         met[k] = 1;
     }
 }
 
-/// From plain least squares over all planes, bounds met: before that, values far from the truth would make others look
-/// disturbed.
-Explanation SeriesFit::refineAll(const std::vector<std::size_t>& words) {
-    constexpr int kMostSteps = 20;
-    const std::vector<std::uint8_t> all(codebook_.planes(), 1);
-    met_.assign(all.size(), 0);
-    for (int step = 0; step < kMostSteps && !atLeast_.empty(); ++step) {
-        const auto solution = solve(fittedOf(all));
-        if (!solution) {
-            met_.assign(all.size(), 0);
-            break;
-        }
-        setResiduals(*solution);
-        meetBounds(residuals_, nextMet_);
-        std::swap(met_, nextMet_);
-        if (met_ == nextMet_)
-            break;
-    }
-    return refine(words, all);
-}
-
 /// The used planes without bounds that are met.
 const std::vector<std::uint8_t>& SeriesFit::fittedOf(const std::vector<std::uint8_t>& used) {
+    if (bounds_.empty())
+        return used;
     fitted_ = used;
-    for (std::size_t k = 0; k < used.size(); ++k)
+    for (const std::size_t k : bounds_)
         fitted_[k] = met_[k] != 0 ? 0 : used[k];
     return fitted_;
 }
 
-/// Fits and drops disturbed planes, and bounds that are met (from the present ones on), in turn.
+/// Fits and drops disturbed planes, and bounds that are met, in turn. Bounds first: before they are met, values far
+/// from the truth would make others look disturbed.
 Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector<std::uint8_t> used) {
     Explanation e;
     e.words = words;
     next_.resize(used.size());
+    met_.assign(used.size(), 0);
+    bool hasMet = bounds_.empty();
     for (int iteration = 1; iteration <= options_.maxIterations; ++iteration) {
         const auto solution = solve(fittedOf(used));
+        if (!solution && !hasMet) {
+            met_.assign(used.size(), 0);
+            hasMet = true;
+            continue;
+        }
         if (!solution) {
             // So few planes are left that nothing is known: as if all of them were disturbed.
             if (words.empty())
@@ -346,6 +335,11 @@ Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector
         if (hasAmbient())
             e.ambient = solution->values[baseCount_ - 1];
         meetBounds(residuals_, nextMet_);
+        if (!hasMet && nextMet_ != met_ && iteration < options_.maxIterations / 2) {
+            std::swap(met_, nextMet_);
+            continue;
+        }
+        hasMet = true;
         const double cost = divide(residuals_, next_) + ridge() * std::pow(e.ambient / sigma_, 2);
         const bool settled = next_ == used && nextMet_ == met_;
         std::swap(used, next_);

@@ -71,7 +71,6 @@ class SeriesFit {
         double drifted = 0;  ///< what the first of the drift is less where the ambient is off its mean over all planes
     };
 
-    [[nodiscard]] Explanation refineAll(const std::vector<std::size_t>& words);
     [[nodiscard]] const std::vector<std::uint8_t>& fittedOf(const std::vector<std::uint8_t>& used);
     [[nodiscard]] Explanation refine(const std::vector<std::size_t>& words, std::vector<std::uint8_t> used);
     void appendColumn(std::span<const std::size_t> planes);
@@ -94,7 +93,7 @@ class SeriesFit {
     const Ambient& ambient_;
     const WordMatchOptions& options_;
     const Eigen::VectorXd& y_;
-    std::span<const std::uint8_t> atLeast_;
+    std::vector<std::size_t> bounds_;  ///< planes whose values are lower bounds
     double cameraSigma_;
     double sigma_;  ///< with the uneven brightness of the LEDs
     // Planes x unknowns: drift, ambient off its mean, and then the columns of what is being fitted.

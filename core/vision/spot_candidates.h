@@ -11,7 +11,7 @@
 namespace skincal {
 
 struct SpotCandidateOptions {
-    double minContrast = 4;       ///< grey levels above the surroundings, after smoothing
+    double minContrast = 2.5;     ///< grey levels above the surroundings, after smoothing
     double noiseFactor = 7;       ///< … and this many times the spread of the contrast map
     double smoothing_px = 1.2;    ///< standard deviation of the smoothing, about that of a spot
     double minDistance_px = 2.5;  ///< of two candidates

@@ -16,11 +16,13 @@ bool isGood(const SpotWindow& window, Eigen::Index i) {
     return window.state(i) != PixelState::Excluded;
 }
 
+/// Of every other good pixel: only a start.
 double medianValue(const SpotWindow& window) {
     std::vector<double> values;
-    values.reserve(static_cast<std::size_t>(window.value.size()));
+    values.reserve(static_cast<std::size_t>(window.value.size() / 2) + 1);
+    bool isOther = false;
     for (Eigen::Index i = 0; i < window.value.size(); ++i) {
-        if (isGood(window, i))
+        if (isGood(window, i) && (isOther = !isOther))
             values.push_back(window.value(i));
     }
     return median(std::move(values));
@@ -128,17 +130,17 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
         return tl::unexpected(SpotFitError::WrongShape);
     const Matrix6d covariance = factor.solve(Matrix6d::Identity());
     const double chi2 = normals.misfit / std::max(1.0, normals.informative - 6.0);
-    const SpotModel::Explained explained = model.explained(*parameters);
     // Of a clipped spot, and one whose middle is blind, the amplitude is an extrapolation. That there is light in the
     // one needs no proof; in the other the rim has to show it.
-    const double squaredSignificance = (window.state == PixelState::Excluded).any()
-                                           ? explained.gain / std::max(1.0, chi2)
-                                           : 1 / (covariance(2, 2) * std::max(1.0, chi2));
-    if (clipped == 0 && !(squaredSignificance >= std::pow(options.minSignificance, 2)))
+    const auto squaredSignificance = [&] {
+        const bool isBlind = (window.state == PixelState::Excluded).any();
+        return (isBlind ? model.explained(*parameters).gain : 1 / covariance(2, 2)) / std::max(1.0, chi2);
+    };
+    if (clipped == 0 && !(squaredSignificance() >= std::pow(options.minSignificance, 2)))
         return tl::unexpected(SpotFitError::NoLight);
     const double width = std::exp((*parameters)[3]);
     if (!(width >= options.minWidth_px && width <= options.maxWidth_px) ||
-        (chi2 > options.maxReducedChi2 && explained.share < options.minExplained))
+        (chi2 > options.maxReducedChi2 && model.explained(*parameters).share < options.minExplained))
         return tl::unexpected(SpotFitError::WrongShape);
 
     SpotFit fit;

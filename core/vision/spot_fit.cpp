@@ -60,10 +60,11 @@ std::optional<SpotParameters> startOf(const SpotWindow& window, const SpotPrior&
 
 /// Where the middle is clipped, a narrow core with a strong halo may look much like a wide core without: a fit that
 /// ends up at an unusual width is tried from the usual one, too.
-SpotModel::Normals minimised(const SpotModel& model, const SpotPrior& prior, SpotParameters& parameters) {
+SpotModel::Normals minimised(const SpotModel& model, const SpotPrior& prior, bool isWhole, SpotParameters& parameters) {
+    constexpr double kSigmas = 0.5;
     SpotParameters usual = parameters;
     SpotModel::Normals least = model.minimise(parameters);
-    if (std::abs(parameters[3] - prior.logWidth) <= prior.logWidthSigma)
+    if (isWhole || std::abs(parameters[3] - prior.logWidth) <= kSigmas * prior.logWidthSigma)
         return least;
     usual[3] = prior.logWidth;
     const SpotModel::Normals other = model.minimise(usual);
@@ -115,7 +116,8 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
         return tl::unexpected(SpotFitError::NoLight);
 
     const SpotModel model(window, options.prior, options.haloWidth);
-    const SpotModel::Normals normals = minimised(model, options.prior, *parameters);
+    const SpotModel::Normals normals =
+        minimised(model, options.prior, (window.state == PixelState::Good).all(), *parameters);
     if (!parameters->allFinite() || !normals.N.allFinite() || !std::isfinite(normals.cost))
         return tl::unexpected(SpotFitError::WrongShape);
 

@@ -14,7 +14,8 @@ struct Drawn {
 };
 
 /// A noisy spot in an 11x11 window whose pixels end at `top`.
-Drawn drawSpot(Random& random, double peak, double width, double top, double readNoise = 1.5, double gain = 0.02) {
+Drawn drawSpot(Random& random, double peak, double width, double top, double readNoise = 1.5, double gain = 0.02,
+               double halo = 0.04) {
     constexpr int kSize = 11;
     Drawn drawn;
     drawn.window.x0 = 200;
@@ -26,7 +27,7 @@ Drawn drawSpot(Random& random, double peak, double width, double top, double rea
     for (int row = 0; row < kSize; ++row) {
         for (int col = 0; col < kSize; ++col) {
             const double r2 = (Vector2d(200 + col, 100 + row) - drawn.centre).squaredNorm() / (2 * width * width);
-            const double clean = 1.5 + peak * (std::exp(-r2) + 0.04 * std::exp(-r2 / 6.25));
+            const double clean = 1.5 + peak * (std::exp(-r2) + halo * std::exp(-r2 / 6.25));
             const double variance = readNoise * readNoise + gain * std::max(0.0, clean);
             double value = clean + std::sqrt(variance) * random.normal();
             if (value >= top) {
@@ -216,6 +217,51 @@ TEST(SpotFit, ExcludedPixelsDoNotCount) {
     const auto fit = fitSpot(drawn.window);
     ASSERT_TRUE(whole.has_value() && fit.has_value());
     EXPECT_LT((whole->centre - fit->centre).norm(), 0.01);
+}
+
+/// Excludes what lies so near to the window's middle, as where the ground alone is clipped.
+void blindMiddle(SpotWindow& window, double radius_px) {
+    for (Eigen::Index row = 0; row < window.state.rows(); ++row) {
+        for (Eigen::Index col = 0; col < window.state.cols(); ++col) {
+            if ((Vector2d(static_cast<double>(col), static_cast<double>(row)) - Vector2d(5, 5)).norm() < radius_px)
+                window.state(row, col) = PixelState::Excluded;
+        }
+    }
+}
+
+TEST(SpotFit, WhereTheMiddleIsBlindTheRimShowsLightAndPlace) {
+    Random random(11, "blind middle");
+    constexpr int kDraws = 600;
+    int found = 0;
+    double normalised = 0;
+    for (int i = 0; i < kDraws; ++i) {
+        Drawn drawn = drawSpot(random, 150, 0.95, 1e9, 0.3, 0);
+        blindMiddle(drawn.window, 3);
+        const auto fit = fitSpot(drawn.window);
+        if (!fit)
+            continue;
+        ++found;
+        normalised += (fit->centre - drawn.centre).squaredNorm() / (2 * fit->sigma_px * fit->sigma_px);
+    }
+    EXPECT_GE(found, kDraws * 95 / 100);
+    EXPECT_NEAR(normalised / found, 1, 0.25);
+    for (int i = 0; i < kDraws; ++i) {
+        Drawn dark = drawSpot(random, 0, 1.2, 1e9, 0.4, 0);
+        blindMiddle(dark.window, 3);
+        EXPECT_FALSE(fitSpot(dark.window).has_value()) << i;
+    }
+}
+
+TEST(SpotFit, ABlindMiddleIsNoNarrowCoreInAStrongHalo) {
+    Random random(12, "narrow core");
+    constexpr double kWidth = 1.09;
+    for (int i = 0; i < 300; ++i) {
+        Drawn drawn = drawSpot(random, random.uniform(250, 400), kWidth, random.uniform(100, 190), 0.25, 0, 0.02);
+        blindMiddle(drawn.window, 2.1);
+        const auto fit = fitSpot(drawn.window);
+        ASSERT_TRUE(fit.has_value());
+        EXPECT_NEAR(std::log(fit->width_px / kWidth), 0, 0.2) << i;
+    }
 }
 
 TEST(SpotFit, MisuseThrows) {

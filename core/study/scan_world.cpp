@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/geometry/random.h"
+#include "core/simulation/renderer.h"
 
 namespace skincal {
 namespace {
@@ -136,18 +138,19 @@ World laidOut(const ScanCase& what, std::uint64_t seed, double widest) {
     return world;
 }
 
-/// From any LED to the nearest other in the picture.
-double spacing_px(const World& world) {
+/// From any LED that the camera sees to the nearest other; nothing where it sees no two.
+std::optional<double> spacing_px(const World& world) {
     std::vector<Vector2d> pixels;
     for (std::size_t u = 0; u < world.T_r_u.size(); ++u) {
-        const Vector3d led_v = world.T_r_v[kScanView].inverse() * (world.T_r_u[u] * world.trueTemplate(u).led);
-        if (const auto pixel = world.scenario.camera.project(led_v))
+        if (const auto pixel = visiblePixel(world, world.T_r_v[kScanView], kScanView, u, visibilityOfLight()))
             pixels.push_back(*pixel);
     }
-    double nearest = std::numeric_limits<double>::max();
+    std::optional<double> nearest;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j)
-            nearest = std::min(nearest, (pixels[i] - pixels[j]).norm());
+        for (std::size_t j = 0; j < i; ++j) {
+            const double apart = (pixels[i] - pixels[j]).norm();
+            nearest = std::min(nearest.value_or(apart), apart);
+        }
     }
     return nearest;
 }
@@ -159,7 +162,9 @@ World scanWorld(const ScanCase& what, std::uint64_t seed) {
         return laidOut(what, seed, std::numeric_limits<double>::max());
     // LEDs sit off the middles of boards that are turned against each other: nearer than the boards.
     const double widest = what.strength * what.distance / simulatedWebcam().fx;
-    return laidOut(what, seed, widest * what.strength / spacing_px(laidOut(what, seed, widest)));
+    World world = laidOut(what, seed, widest);
+    const std::optional<double> spacing = spacing_px(world);
+    return spacing ? laidOut(what, seed, widest * what.strength / *spacing) : world;
 }
 
 }  // namespace skincal

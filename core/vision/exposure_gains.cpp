@@ -29,14 +29,15 @@ struct PlaneShare {
     double level = 1;
 };
 
-/// The value that nine tenths of them stay below, or one tenth.
+/// The value that nine tenths of them stay below.
 double highOf(std::vector<float>& values) {
     const auto high = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
     std::nth_element(values.begin(), high, values.end());
     return static_cast<double>(*high);
 }
+/// That one quarter of them stays below: of what blinks a balanced word, about the middle of what is dark.
 double lowOf(std::vector<float>& values) {
-    const auto low = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 10);
+    const auto low = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 4);
     std::nth_element(values.begin(), low, values.end());
     return static_cast<double>(*low);
 }
@@ -68,7 +69,8 @@ std::optional<Witness> witnessOf(const SpotSeries& series, Eigen::Index spot, do
     return witness;
 }
 
-std::vector<Witness> witnessesIn(const SpotSeries& series, std::span<const double> sigma) {
+/// @param leds  how many there are
+std::vector<Witness> witnessesIn(const SpotSeries& series, std::span<const double> sigma, std::size_t leds) {
     // Exposure is the same for all: some of them, from all over the picture, tell as well.
     constexpr std::size_t kAsked = 2000;
     const std::size_t step = series.clipped.size() / kAsked + 1;
@@ -88,10 +90,10 @@ std::vector<Witness> witnessesIn(const SpotSeries& series, std::span<const doubl
     constexpr double kOfStrong = 0.4;
     if (sorted.empty())
         return witnesses;
-    // Of all that blinks a tenth may be LEDs, or far less where the ground is patterned.
+    // Of all that blinks a tenth may be LEDs, or far less where the ground is patterned; half of the LEDs may be seen.
     constexpr std::size_t kStrongest = 10;
-    const auto nearlyMost =
-        sorted.end() - 1 - static_cast<std::ptrdiff_t>(std::min(kStrongest, (sorted.size() - 1) / 10));
+    const std::size_t rank = std::min({kStrongest, (sorted.size() - 1) / 10, leds / (2 * step)});
+    const auto nearlyMost = sorted.end() - 1 - static_cast<std::ptrdiff_t>(rank);
     std::nth_element(sorted.begin(), nearlyMost, sorted.end());
     std::erase_if(witnesses, [&](const Witness& one) { return one.strongest < kOfStrong * *nearlyMost; });
     return witnesses;
@@ -143,7 +145,8 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
     constexpr double kLeastStep = 0.05;
     constexpr double kLeastPart = 0.3;
     std::vector<double> gains(static_cast<std::size_t>(series.light.rows()), 1);
-    const std::vector<Witness> witnesses = witnessesIn(series, sigma);
+    const std::size_t leds = litCount.empty() ? 0 : *std::max_element(litCount.begin(), litCount.end());
+    const std::vector<Witness> witnesses = witnessesIn(series, sigma, leds);
     if (witnesses.size() < kFewest)
         return gains;
     std::vector<std::optional<PlaneShare>> shares(gains.size());

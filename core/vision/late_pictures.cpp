@@ -11,8 +11,8 @@ namespace {
 constexpr int kLatest = 2;
 /// What steps once or flares up is no LED.
 constexpr int kFewestChanges = 4;
-constexpr double kFewestSpots = 4;
-constexpr double kTimesMore = 2;  ///< words than there are as pictures are
+constexpr std::size_t kFewestWords = 4;
+constexpr std::size_t kTimesMore = 2;  ///< words than there are as pictures are
 
 /// A plane in which all LEDs are on, or all off.
 struct AllAlike {
@@ -36,9 +36,9 @@ std::vector<AllAlike> allAlikeIn(const Codebook& codebook) {
     return alike;
 }
 
-using Series = Eigen::Array<bool, Eigen::Dynamic, 1>;
+using Brightness = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
-int changesOf(const Series& isBright) {
+int changesOf(const Brightness& isBright) {
     int changes = 0;
     for (Eigen::Index k = 1; k < isBright.size(); ++k)
         changes += isBright[k] != isBright[k - 1] ? 1 : 0;
@@ -46,7 +46,7 @@ int changesOf(const Series& isBright) {
 }
 
 /// Whether a spot is bright and dark as all LEDs were, so many pictures later.
-bool agrees(const Series& isBright, const std::vector<AllAlike>& alike, int late) {
+bool agrees(const Brightness& isBright, const std::vector<AllAlike>& alike, int late) {
     return std::all_of(alike.begin(), alike.end(), [&](const AllAlike& one) {
         const Eigen::Index seen = one.plane + late;
         return seen >= isBright.size() || isBright[seen] == one.isOn;
@@ -54,15 +54,16 @@ bool agrees(const Series& isBright, const std::vector<AllAlike>& alike, int late
 }
 
 /// As it would be in time. The pictures that were not taken any more are as dark as the first.
-template <class Series>
-void bringInTime(Series&& series, int late) {
-    if (series.size() > 0)
-        std::rotate(series.data(), series.data() + late, series.data() + series.size());
+template <class Values>
+void bringInTime(Values& values, int late) {
+    if (values.size() > 0)
+        std::rotate(values.data(), values.data() + late, values.data() + values.size());
 }
 
-/// How many words these blink, so many pictures later; of very many only some are asked. A lamp may shine on many spots
-/// as one word does, a camera that is late shows many words.
-double wordsIn(const SpotScan& scan, const WordMatcher& matcher, const std::vector<std::size_t>& spots, int late) {
+/// Whether these spots blink so many words, so many pictures later. A lamp may shine on many spots as one word does, a
+/// camera that is late shows many words. Of very many spots only some are asked, and stand for the rest.
+bool blinkWords(const SpotScan& scan, const WordMatcher& matcher, const std::vector<std::size_t>& spots, int late,
+                std::size_t most) {
     constexpr std::size_t kAsked = 100;
     const std::size_t step = spots.size() / kAsked + 1;
     std::set<std::size_t> words;
@@ -78,7 +79,7 @@ double wordsIn(const SpotScan& scan, const WordMatcher& matcher, const std::vect
         if (match.verdict == SeriesVerdict::Matched)
             words.insert(match.words.front());
     }
-    return static_cast<double>(words.size() * step);
+    return words.size() >= kFewestWords && words.size() * step >= most;
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ std::optional<int> picturesLate(const SpotScan& scan, std::size_t inTime, const 
     std::array<std::vector<std::size_t>, kLatest> suspects;
     for (Eigen::Index spot = 0; spot < scan.series.light.cols(); ++spot) {
         const auto series = scan.series.light.col(spot).array();
-        const Series isBright = series > 0.5F * (series.minCoeff() + series.maxCoeff());
+        const Brightness isBright = series > 0.5F * (series.minCoeff() + series.maxCoeff());
         if (changesOf(isBright) < kFewestChanges)
             continue;
         for (int late = 1; late <= kLatest; ++late) {
@@ -100,15 +101,15 @@ std::optional<int> picturesLate(const SpotScan& scan, std::size_t inTime, const 
                 suspects.at(static_cast<std::size_t>(late - 1)).push_back(static_cast<std::size_t>(spot));
         }
     }
-    const double enough = std::max(kFewestSpots, kTimesMore * static_cast<double>(inTime));
+    const std::size_t enough = std::max(kFewestWords, kTimesMore * inTime);
     std::optional<WordMatcher> matcher;
     for (int late = 1; late <= kLatest; ++late) {
         const auto& spots = suspects.at(static_cast<std::size_t>(late - 1));
-        if (static_cast<double>(spots.size()) < enough)
+        if (spots.size() < enough)
             continue;
         if (!matcher)
             matcher.emplace(codebook, options);
-        if (wordsIn(scan, *matcher, spots, late) >= enough)
+        if (blinkWords(scan, *matcher, spots, late, enough))
             return late;
     }
     return std::nullopt;

@@ -9,10 +9,10 @@ namespace skincal {
 
 /// By how many pictures a camera is later than whoever took them believed: each picture then shows what was lit before
 /// it, and words that are shifted alike can be those of other modules. Told by the pictures in which all LEDs are on,
-/// or all off (codedScan has such at both ends): of the spots that agree with them only so many pictures later, more
-/// must then blink a word than do as they are.
+/// or all off (codedScan has such at both ends): the spots that agree with them only so many pictures later must then
+/// blink twice as many words, four at least, as spots do as they are.
 /// @param scan    exposure levelled
-/// @param inTime  spots that blink a word as they are
+/// @param inTime  words that spots blink as they are
 /// @return one or two; nothing where pictures are in time, and where a book has no such pictures or is coloured
 [[nodiscard]] std::optional<int> picturesLate(const SpotScan& scan, std::size_t inTime,
                                               const WordMatchOptions& options = {});

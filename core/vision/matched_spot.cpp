@@ -105,9 +105,11 @@ WordReading readingOf(const SpotScan& scan, const MatchedSpot& match, std::size_
     reading.sent.assign(scan.codebook.lit[module].begin(), scan.codebook.lit[module].end());
     const Eigen::VectorXd light = lightOf(scan, match, j);
     for (std::size_t k = 0; k < reading.planes; ++k) {
-        if (match.series.used[k] == 0)
+        const bool isBright = light[static_cast<Eigen::Index>(k)] > 0.5 * match.series.amplitudes[j];
+        // Of light that is cut off so much could not be told whether it was there.
+        if (match.series.used[k] == 0 || (match.series.met[k] != 0 && !isBright))
             reading.disturbed.push_back(static_cast<std::uint32_t>(k));
-        else if (light[static_cast<Eigen::Index>(k)] > 0.5 * match.series.amplitudes[j])
+        else if (isBright)
             reading.received.push_back(static_cast<std::uint32_t>(k));
     }
     reading.snr = match.series.amplitudes[j] / scan.sigma[match.candidate];

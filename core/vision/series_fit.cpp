@@ -70,6 +70,7 @@ Explanation SeriesFit::explain(const std::vector<std::size_t>& words) {
     if (words.size() == 1 && !best.isClean()) {
         std::vector<std::uint8_t> used(codebook_.planes());
         Eigen::VectorXd residuals = residualsFromLevels(words[0]);
+        met_.assign(used.size(), 0);
         meetBounds(residuals, met_);
         (void)divide(residuals, used);
         Explanation other = refine(words, std::move(used));
@@ -112,7 +113,7 @@ bool SeriesFit::mayBeDisturbance(const Explanation& e) const {
     for (const std::size_t word : e.words) {
         std::vector<std::size_t> seen;
         std::copy_if(codebook_.lit[word].begin(), codebook_.lit[word].end(), std::back_inserter(seen),
-                     [&](std::size_t plane) { return e.used[plane] != 0; });
+                     [&](std::size_t plane) { return e.used[plane] != 0 && e.met[plane] == 0; });
         if (seen.size() >= kEnough)
             continue;
         if (isCalm.empty())
@@ -135,6 +136,10 @@ bool SeriesFit::believable(const Explanation& e) const {
     const bool two = e.words.size() > 1;
     const double most = two ? 0 : e.runs > 1 ? options_.maxDisturbed : options_.maxHidden;
     if (!e.significant || mayBeDisturbance(e))
+        return false;
+    // Bounds that are met say little, however cheap they are.
+    constexpr double kLeastFitted = 0.25;
+    if (static_cast<double>(e.fitted) < kLeastFitted * static_cast<double>(codebook_.planes()))
         return false;
     return static_cast<double>(e.disturbed) <= most * static_cast<double>(codebook_.planes()) &&
            e.reducedCost <= options_.maxReducedCost &&
@@ -289,7 +294,6 @@ void SeriesFit::setResiduals(const Solution& solution) {
 }
 
 void SeriesFit::meetBounds(Eigen::VectorXd& residuals, std::vector<std::uint8_t>& met) const {
-    met.assign(static_cast<std::size_t>(residuals.size()), 0);
     for (const std::size_t k : bounds_) {
         double& residual = residuals[static_cast<Eigen::Index>(k)];
         // What is met by less than noise counts as a value: else none might be left that the words are fitted to.
@@ -317,11 +321,14 @@ Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector
     e.words = words;
     next_.resize(used.size());
     met_.assign(used.size(), 0);
-    bool hasMet = bounds_.empty();
+    bool isBounded = !bounds_.empty();
+    bool hasMet = !isBounded;
     for (int iteration = 1; iteration <= options_.maxIterations; ++iteration) {
         const auto solution = solve(fittedOf(used));
-        if (!solution && !hasMet) {
+        // Without what tells little nothing is left: then it counts as any other.
+        if (!solution && isBounded) {
             met_.assign(used.size(), 0);
+            isBounded = false;
             hasMet = true;
             continue;
         }
@@ -334,7 +341,9 @@ Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector
         setResiduals(*solution);
         if (hasAmbient())
             e.ambient = solution->values[baseCount_ - 1];
-        meetBounds(residuals_, nextMet_);
+        nextMet_.assign(used.size(), 0);
+        if (isBounded)
+            meetBounds(residuals_, nextMet_);
         if (!hasMet && nextMet_ != met_ && iteration < options_.maxIterations / 2) {
             std::swap(met_, nextMet_);
             continue;
@@ -352,6 +361,7 @@ Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector
             return e;
         e.cost = cost;
         e.used = std::move(used);
+        e.met = met_;
         judge(*solution, settled, e);
         return e;
     }
@@ -367,16 +377,16 @@ void SeriesFit::judge(const Solution& solution, bool settled, Explanation& e) co
     // over which the words need not even be separable. Its cost is a cost all the same, which others must beat.
     e.significant = settled && (e.amplitudes.array() > options_.minSignificance * sigmas.array()).all();
     double left = 0;
-    double freedom = -static_cast<double>(count_);
     for (std::size_t k = 0; k < e.used.size(); ++k) {
         if (e.used[k] != 0) {
             left += std::pow(residuals_[static_cast<Eigen::Index>(k)], 2);
-            freedom += met_[k] != 0 ? 0 : 1;
+            e.fitted += met_[k] != 0 ? 0U : 1U;
         } else {
             ++e.disturbed;
             e.runs += k == 0 || e.used[k - 1] != 0 ? 1U : 0U;
         }
     }
+    const double freedom = static_cast<double>(e.fitted) - static_cast<double>(count_);
     e.reducedCost = freedom > 0 ? left / (sigma_ * sigma_) / freedom : 0.0;
     if (words > 0) {
         // What the sum of squares falls by where the words are let in.

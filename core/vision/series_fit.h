@@ -27,10 +27,12 @@ struct Explanation {
     Unknowns drift;                                         ///< of the columns of Codebook::drift
     double ambient = 0;                                     ///< share of what the surroundings do
     std::vector<std::uint8_t> used;                         ///< per plane, 0 where it is taken for disturbed
+    std::vector<std::uint8_t> met;                          ///< per plane, 1 where it is a bound and tells no more
     double cost = std::numeric_limits<double>::infinity();  ///< -2 log likelihood
     std::size_t disturbed = 0;                              ///< planes
     std::size_t runs = 0;                                   ///< of disturbed planes
-    double reducedCost = 0;                                 ///< of the used planes, per degree of freedom
+    std::size_t fitted = 0;    ///< planes that are neither disturbed nor a bound that is met
+    double reducedCost = 0;    ///< of the used planes, per degree of freedom
     double explained = 0;      ///< share of the blinking in the used planes, camera noise taken off
     bool significant = false;  ///< and settled; else it may compete, but not win
 
@@ -76,7 +78,7 @@ class SeriesFit {
     void appendColumn(std::span<const std::size_t> planes);
     /// @param fitted  planes that count
     [[nodiscard]] std::optional<Solution> solve(const std::vector<std::uint8_t>& fitted) const;
-    /// Sets residuals to zero where a bound is met.
+    /// Sets residuals to zero where a bound is met, and `met` to one.
     void meetBounds(Eigen::VectorXd& residuals, std::vector<std::uint8_t>& met) const;
     void judge(const Solution& solution, bool settled, Explanation& e) const;
     void setResiduals(const Solution& solution);

@@ -77,6 +77,17 @@ SpotModel::Normals minimised(const SpotModel& model, const SpotPrior& prior, boo
 
 }  // namespace
 
+bool isBlindNear(const SpotWindow& window, const Vector2d& centre, double radius_px) {
+    for (Eigen::Index row = 0; row < window.state.rows(); ++row) {
+        for (Eigen::Index col = 0; col < window.state.cols(); ++col) {
+            const Vector2d pixel(static_cast<double>(window.x0 + col), static_cast<double>(window.y0 + row));
+            if (window.state(row, col) == PixelState::Excluded && (pixel - centre).norm() <= radius_px)
+                return true;
+        }
+    }
+    return false;
+}
+
 Sentence sentenceOf(SpotFitError error) {
     switch (error) {
         case SpotFitError::TooFewPixels:
@@ -135,7 +146,8 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
     // Of a clipped spot, and one whose middle is blind, the amplitude is an extrapolation. That there is light in the
     // one needs no proof; in the other the rim has to show it.
     const auto squaredSignificance = [&] {
-        const bool isBlind = (window.state == PixelState::Excluded).any();
+        constexpr double kMiddle_px = 1.5;
+        const bool isBlind = isBlindNear(window, centre, kMiddle_px);
         return (isBlind ? model.explained(*parameters).gain : 1 / covariance(2, 2)) / std::max(1.0, chi2);
     };
     if (clipped == 0 && !(squaredSignificance() >= std::pow(options.minSignificance, 2)))

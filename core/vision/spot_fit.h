@@ -36,7 +36,7 @@ struct SpotFitOptions {
     double haloWidth = 2.5;     ///< halo's width over the core's
     double minWidth_px = 0.35;  ///< standard deviation of the core; below it is a hot pixel
     double maxWidth_px = 4.0;
-    double minSignificance = 6;    ///< amplitude over its standard deviation
+    double minSignificance = 6;    ///< amplitude over its standard deviation; with a blind middle, light over a slope
     double minExplained = 0.8;     ///< share of the light's variation that a spot of this shape must explain …
     double maxReducedChi2 = 4;     ///< … unless the misfit is no more than this many times the noise
     double sigmaFloor_px = 0.001;  ///< what no model of a lens gets right, added in quadrature
@@ -65,6 +65,9 @@ struct SpotFit {
     /// Light of the core, grey levels times pixels.
     [[nodiscard]] double flux() const;
 };
+
+/// Whether pixels so near to a centre are excluded.
+[[nodiscard]] bool isBlindNear(const SpotWindow& window, const Vector2d& centre, double radius_px);
 
 /// Sub-pixel centre of an LED's light: maximum likelihood for a round Gaussian with a faint halo on a constant offset
 /// (SpotModel), every pixel weighted with its own noise, clipped pixels as lower bounds. Six unknowns.

@@ -1,5 +1,7 @@
 #include "core/vision/spot_maps.h"
 
+#include <algorithm>
+
 #include "core/vision/clipped_planes.h"
 #include "core/vision/neighbourhood.h"
 #include "core/vision/parallel.h"
@@ -9,15 +11,24 @@ namespace {
 
 /// The used planes without those whose ground is black, which swallows some of the light, where the words can still be
 /// told apart.
-std::vector<std::uint8_t> wholePlanes(const Codebook& codebook, const SeriesMatch& match,
-                                      const Eigen::VectorXf& around) {
-    const std::vector<std::uint8_t> black = blackPlanes(around);
-    std::vector<std::uint8_t> whole = match.used;
+std::vector<std::uint8_t> wholePlanes(const SpotScan& scan, const MatchedSpot& match) {
+    const std::vector<std::uint8_t>& used = match.series.used;
+    if (scan.codebook.coloured)
+        return used;
+    const std::vector<std::uint8_t> black =
+        blackPlanes(scan.series.around.col(static_cast<Eigen::Index>(match.candidate)));
+    std::vector<std::uint8_t> whole = used;
     for (std::size_t k = 0; k < whole.size(); ++k) {
         if (black[k] != 0)
             whole[k] = 0;
     }
-    return whole == match.used || amplitudeWeights(codebook, match.words, whole).size() == 0 ? match.used : whole;
+    if (whole == used)
+        return used;
+    const Ambient ambient = scan.ambientOfSpot(match.candidate);
+    const bool isEnough = std::all_of(match.series.words.begin(), match.series.words.end(), [&](std::size_t word) {
+        return amplitudeWeights(scan.codebook, std::vector{word}, whole, ambient).size() > 0;
+    });
+    return isEnough ? whole : used;
 }
 
 }  // namespace
@@ -28,11 +39,12 @@ void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& opti
     constexpr std::size_t kWatched = 100;
     // A halo of a few per cent reaches as far as that.
     const Neighbourhood neighbourhood(matches, options.windowRadius + 5);
-    const auto filterOf = [&](const MatchedSpot& match, std::size_t j, const std::vector<std::size_t>& around) {
+    const auto filterOf = [&](const MatchedSpot& match, std::size_t j, const std::vector<std::size_t>& around,
+                              const std::vector<std::uint8_t>& used) {
         LightFilter filter;
         filter.words = {match.series.words[j]};
         filter.around = scan.series.around.col(static_cast<Eigen::Index>(match.candidate));
-        filter.used = wholePlanes(scan.codebook, match.series, filter.around);
+        filter.used = used;
         filter.gains = scan.gains;
         filter.sigma = scan.sigma[match.candidate];
         filter.shared = sharesSpot(match.series, j);
@@ -47,14 +59,17 @@ void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& opti
     (void)forEach(matches.size(), {}, [&](std::size_t i) {
         MatchedSpot& match = matches[i];
         const std::vector<std::size_t> around = neighbourhood.wordsAround(i, kMostNeighbours);
+        const std::vector<std::uint8_t> used = wholePlanes(scan, match);
         for (std::size_t j = 0; j < match.series.words.size(); ++j)
-            match.maps.emplace_back(match.spot, options.windowRadius, size, scan.codebook, filterOf(match, j, around));
+            match.maps.emplace_back(match.spot, options.windowRadius, size, scan.codebook,
+                                    filterOf(match, j, around, used));
     });
     std::size_t watched = 0;
     const std::size_t every = 1 + matches.size() / kWatched;
     for (std::size_t i = 0; i < matches.size() && watched < kWatched; i += every) {
         if (matches[i].series.words.size() == 1) {
-            motion.watch(matches[i].spot, size, scan.codebook, filterOf(matches[i], 0, {}));
+            motion.watch(matches[i].spot, size, scan.codebook,
+                         filterOf(matches[i], 0, {}, wholePlanes(scan, matches[i])));
             ++watched;
         }
     }

@@ -138,32 +138,35 @@ SpotModel::Explained SpotModel::explained(const SpotParameters& p) const {
     const auto eachGood = [&](const auto& visit) {
         for (Eigen::Index col = 0; col < window_.value.cols(); ++col) {
             for (Eigen::Index row = 0; row < window_.value.rows(); ++row) {
+                const Vector2d away(window_.x0 + static_cast<double>(col) - p[0],
+                                    window_.y0 + static_cast<double>(row) - p[1]);
                 if (window_.state(row, col) == PixelState::Good)
-                    visit(row, col, weight_(row, col), window_.value(row, col));
+                    visit(away, weight_(row, col), window_.value(row, col));
             }
         }
     };
-    double weights = 0;
-    double mean = 0;
-    eachGood([&](Eigen::Index, Eigen::Index, double weight, double value) {
-        weights += weight;
-        mean += weight * value;
+    // Weighted sums of 1, x and y with each other and with the light.
+    Matrix3d slopes = Matrix3d::Zero();
+    Vector3d moment = Vector3d::Zero();
+    double squares = 0;
+    eachGood([&](const Vector2d& away, double weight, double value) {
+        const Vector3d plane(1, away.x(), away.y());
+        slopes += weight * plane * plane.transpose();
+        moment += weight * value * plane;
+        squares += weight * value * value;
     });
-    mean /= weights;
     // Bounds that are not met are misfit, too, but not of these pixels.
-    double total = 0;
     double met = 0;
     const double amplitude = std::exp(p[2]);
     const double inverse = std::exp(-2 * p[3]);
-    eachGood([&](Eigen::Index row, Eigen::Index col, double weight, double value) {
-        total += weight * std::pow(value - mean, 2);
-        const double dx = window_.x0 + static_cast<double>(col) - p[0];
-        const double dy = window_.y0 + static_cast<double>(row) - p[1];
-        const double r2 = 0.5 * inverse * (dx * dx + dy * dy);
+    eachGood([&](const Vector2d& away, double weight, double value) {
+        const double r2 = 0.5 * inverse * away.squaredNorm();
         const double light = amplitude * (std::exp(-r2) + p[5] * std::exp(-r2 / (haloWidth_ * haloWidth_)));
         met += weight * std::pow(p[4] + light - value, 2);
     });
-    return {total - met, total > 0 ? 1 - met / total : 0.0};
+    const double even = squares - moment[0] * moment[0] / slopes(0, 0);
+    const double sloping = squares - moment.dot(slopes.ldlt().solve(moment));
+    return {sloping - met, even > 0 ? 1 - met / even : 0.0};
 }
 
 SpotModel::Normals SpotModel::minimise(SpotParameters& p) const {

@@ -30,7 +30,7 @@ class SpotModel {
     [[nodiscard]] Normals at(const SpotParameters& p) const;
     /// What of the light's variation, clipped pixels left out, the model explains.
     struct Explained {
-        double gain = 0;   ///< by how much the misfit is less than that of even light, over the noise squared
+        double gain = 0;   ///< by how much the misfit is less than that of light on a slope, over the noise squared
         double share = 0;  ///< of the variation
     };
     [[nodiscard]] Explained explained(const SpotParameters& p) const;

@@ -1,6 +1,7 @@
 #include "core/vision/spot_passes.h"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 #include "core/vision/frame_pass.h"
@@ -109,7 +110,10 @@ Done SpotPasses::match() {
     if (!matched)
         return tl::unexpected(ScanError{Sentence::saying("cancelled"), true});
     result_.matches = *std::move(matched);
-    if (const auto late = picturesLate(result_.scan, result_.matches.size(), options_.words))
+    std::set<std::size_t> inTime;
+    for (const MatchedSpot& match : result_.matches)
+        inTime.insert(match.series.words.begin(), match.series.words.end());
+    if (const auto late = picturesLate(result_.scan, inTime.size(), options_.words))
         return tl::unexpected(ScanError{
             Sentence::saying("{}: each picture shows what was lit {} before it: the camera is later than it was "
                              "waited for",

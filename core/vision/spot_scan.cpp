@@ -44,6 +44,9 @@ Ambient SpotScan::ambientOfSpot(std::size_t candidate) const {
 }
 
 std::vector<std::uint8_t> SpotScan::boundsOfSpot(std::size_t candidate) const {
+    // Channels are clipped and black apart, and in so few pictures there is none to spare.
+    if (codebook.coloured)
+        return {};
     const auto spot = static_cast<Eigen::Index>(candidate);
     std::vector<std::uint8_t> bounds = atLeastPlanes(series.isFull.col(spot), series.around.col(spot));
     if (std::find(bounds.begin(), bounds.end(), 1) == bounds.end())

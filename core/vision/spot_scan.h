@@ -21,7 +21,7 @@ struct SpotScan {
     [[nodiscard]] Eigen::VectorXd levelled(std::size_t candidate) const;
     [[nodiscard]] Ambient ambientOfSpot(std::size_t candidate) const;
     /// Planes in which a candidate has its light or more, as what it adds is cut off (atLeastPlanes); empty where
-    /// there are none.
+    /// there are none, and in colours.
     [[nodiscard]] std::vector<std::uint8_t> boundsOfSpot(std::size_t candidate) const;
 };
 

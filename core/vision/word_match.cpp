@@ -127,6 +127,7 @@ SeriesMatch matchOf(const Explanation& e) {
         match.amplitudes.push_back(amplitude(j));
     }
     match.used = e.used;
+    match.met = e.met;
     match.drift = e.drift;
     match.ambient = e.ambient;
     return match;

@@ -42,6 +42,7 @@ struct SeriesMatch {
     Eigen::VectorXd drift{};         ///< of the columns of Codebook::drift
     double ambient = 0;              ///< share of what the surroundings do
     std::vector<std::uint8_t> used;  ///< per plane, 0 where it was disturbed
+    std::vector<std::uint8_t> met;   ///< per plane, 1 where its value is a lower bound and the words give more
     double margin = 0;               ///< lead over the runner-up, -2 log likelihood
     std::optional<std::size_t> runnerUp{};
 };
@@ -54,7 +55,8 @@ struct SeriesMatch {
 /// light at all included) must differ by `minMargin`. One-at-a-time words have a single lit plane and hence no
 /// redundancy: there a flash exactly in that frame looks like the LED; the shape of the spot has to decide.
 /// A plane that is known to have its light or more (a clipped LED under a lamp has as much as the lamp leaves) costs
-/// nothing where the model is above it.
+/// nothing where the model is above it by more than the noise, and is left out of the fit. A quarter of the planes must
+/// be left.
 /// The words of a Matched series can be separated over its `used` planes (amplitudeWeights is not empty) and its
 /// amplitudes are the least-squares ones there (with `ambient`, but for its prior, and without bounds that are met): an
 /// explanation whose planes keep coming and going counts as a rival, but never as the answer.

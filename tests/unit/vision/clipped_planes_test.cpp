@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "core/geometry/random.h"
 #include "core/vision/coded_scan.h"
@@ -73,22 +76,25 @@ SeriesMatch matchOf(const Codebook& codebook, const Seen& seen) {
 class ClippedBy : public ::testing::TestWithParam<Room> {};
 
 TEST_P(ClippedBy, LedsAreNamedAndGroundIsNot) {
-    constexpr std::size_t kModules = 55;
     constexpr std::uint64_t kDraws = 400;
-    int named = 0;
-    for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
-        const Codebook codebook = codebookOf(kModules, seed);
-        Random random(seed, "who");
-        const std::size_t module = random.index(kModules);
-        const SeriesMatch led = matchOf(codebook, seenOf(codebook, GetParam(), module, random.uniform(60, 300), seed));
-        if (led.verdict == SeriesVerdict::Matched) {
-            ASSERT_EQ(led.words, std::vector{module}) << seed;
-            ++named;
+    // With 200 a lamp that beats every third picture goes black whenever some bits and their complements are shown.
+    for (const auto& [modules, share] : {std::pair(28U, 94), std::pair(55U, 94), std::pair(200U, 80)}) {
+        int named = 0;
+        for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+            const Codebook codebook = codebookOf(modules, seed);
+            Random random(seed, "who");
+            const std::size_t module = random.index(modules);
+            const SeriesMatch led =
+                matchOf(codebook, seenOf(codebook, GetParam(), module, random.uniform(60, 300), seed));
+            if (led.verdict == SeriesVerdict::Matched) {
+                ASSERT_EQ(led.words, std::vector{module}) << seed;
+                ++named;
+            }
+            const SeriesMatch ground = matchOf(codebook, seenOf(codebook, GetParam(), std::nullopt, 0, seed));
+            EXPECT_NE(ground.verdict, SeriesVerdict::Matched) << seed;
         }
-        const SeriesMatch ground = matchOf(codebook, seenOf(codebook, GetParam(), std::nullopt, 0, seed));
-        EXPECT_NE(ground.verdict, SeriesVerdict::Matched) << seed;
+        EXPECT_GE(named, static_cast<int>(kDraws) * share / 100) << modules;
     }
-    EXPECT_GE(named, static_cast<int>(kDraws) * 94 / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Light, ClippedBy, ::testing::Values(&lamp, &risingSun),

@@ -13,24 +13,23 @@ struct Plane {
     double exposure = 1;  ///< over the usual one
 };
 
-constexpr std::size_t kLeds = 40;
 constexpr std::size_t kGrounds = 300;
 constexpr double kSigma = 0.8;
 
 /// LEDs that blink at random on bright patches of ground, and other such patches.
 struct Room {
     SpotSeries series;
-    std::vector<double> sigma = std::vector<double>(kLeds + kGrounds, kSigma);
+    std::vector<double> sigma;
     std::vector<std::size_t> litCount;
 
-    Room(const std::vector<Plane>& planes, double led, double ground, std::uint64_t seed)
-        : series(planes.size(), kLeds + kGrounds), litCount(planes.size(), 0) {
+    Room(const std::vector<Plane>& planes, std::size_t leds, double led, double ground, std::uint64_t seed)
+        : series(planes.size(), leds + kGrounds), sigma(leds + kGrounds, kSigma), litCount(planes.size(), 0) {
         Random random(seed, "exposure gains");
         for (std::size_t spot = 0; spot < sigma.size(); ++spot) {
             const double bright = random.uniform(0.2, 0.8);
-            const double amplitude = spot < kLeds ? led * random.uniform(0.6, 1) : 0.0;
+            const double amplitude = spot < leds ? led * random.uniform(0.6, 1) : 0.0;
             for (std::size_t k = 0; k < planes.size(); ++k) {
-                const bool isLit = spot < kLeds && random.uniform() < 0.5;
+                const bool isLit = spot < leds && (k == 1 || random.uniform() < 0.5);
                 litCount[k] += isLit ? 1 : 0;
                 const double around = ground * planes[k].room;
                 const double level =
@@ -57,7 +56,8 @@ TEST(ExposureGains, TellAStepOfTheExposure) {
         for (std::size_t k = from; k < from + count; ++k)
             planes[k].exposure = darker;
         for (const double led : {60.0, 150.0}) {
-            const std::vector<double> gains = Room(planes, led, 50, seed).gains();
+            constexpr std::size_t leds = 40;
+            const std::vector<double> gains = Room(planes, leds, led, 50, seed).gains();
             for (std::size_t k = 0; k < planes.size(); ++k)
                 EXPECT_NEAR(gains[k], planes[k].exposure, 0.05) << k << ", seed " << seed;
         }
@@ -70,11 +70,12 @@ TEST(ExposureGains, SunIsNoExposure) {
         for (std::size_t k = 0; k < planes.size(); ++k)
             planes[k].room = 1 + 2.0 * static_cast<double>(k) / 24 - (k > 9 && k < 15 ? 0.8 : 0.0);
         // In their range, clipped by the sun, clipped all the time.
-        for (const double led : {60.0, 150.0, 400.0}) {
-            const std::vector<double> gains = Room(planes, led, 50, seed).gains();
-            for (std::size_t k = 0; k < planes.size(); ++k)
-                EXPECT_EQ(gains[k], 1) << k << ", LEDs of " << led << ", seed " << seed;
-        }
+        for (const double led : {60.0, 150.0, 400.0})
+            for (const std::size_t leds : {0, 5, 7, 40}) {
+                const std::vector<double> gains = Room(planes, leds, led, 50, seed).gains();
+                for (std::size_t k = 0; k < planes.size(); ++k)
+                    EXPECT_EQ(gains[k], 1) << k << ", " << leds << " LEDs of " << led << ", seed " << seed;
+            }
     }
 }
 
@@ -83,15 +84,17 @@ TEST(ExposureGains, ALampThatGoesBlackIsNoExposure) {
         std::vector<Plane> planes(24);
         for (std::size_t k = 0; k < planes.size(); k += 3)
             planes[k].room = -1;
-        const std::vector<double> gains = Room(planes, 150, 60, seed).gains();
-        for (std::size_t k = 0; k < planes.size(); ++k)
-            EXPECT_EQ(gains[k], 1) << k << ", seed " << seed;
+        for (const std::size_t leds : {0, 5, 7, 40}) {
+            const std::vector<double> gains = Room(planes, leds, 150, 60, seed).gains();
+            for (std::size_t k = 0; k < planes.size(); ++k)
+                EXPECT_EQ(gains[k], 1) << k << ", " << leds << " LEDs, seed " << seed;
+        }
     }
 }
 
 TEST(ExposureGains, WithoutLedsNothingIsTold) {
     const std::vector<Plane> planes(24);
-    EXPECT_EQ(Room(planes, 0, 50, 1).gains(), std::vector<double>(24, 1));
+    EXPECT_EQ(Room(planes, 40, 0, 50, 1).gains(), std::vector<double>(24, 1));
     EXPECT_EQ(exposureGains(SpotSeries(5, 0), {}, std::vector<std::size_t>(5, 9)), std::vector<double>(5, 1));
 }
 

@@ -82,14 +82,14 @@ TEST(LatePictures, WhatElseIsInAPictureDoesNotMakeItLate) {
 }
 
 TEST(LatePictures, ManySpotsThatBlinkOneWordAreALampsAndNotLate) {
-    for (std::uint64_t seed = 0; seed < 50; ++seed) {
-        constexpr Eigen::Index kOwn = 6;
-        SpotScan scan = scanOf(kOwn, 0, 2, seed, 300);
-        const SpotScan late = scanOf(kOwn, 1, 2, seed);
-        for (Eigen::Index spot = kOwn; spot < scan.series.light.cols(); ++spot)
-            scan.series.light.col(spot) = late.series.light.col(0);
-        EXPECT_EQ(picturesLate(scan, wordsIn(scan)), std::nullopt) << seed;
-    }
+    for (std::uint64_t seed = 0; seed < 30; ++seed)
+        for (const auto& [own, others] : {std::pair(2, 300), std::pair(6, 300), std::pair(6, 1200)}) {
+            SpotScan scan = scanOf(static_cast<std::size_t>(own), 0, 2, seed, static_cast<std::size_t>(others));
+            const SpotScan late = scanOf(static_cast<std::size_t>(own), 1, 2, seed);
+            for (Eigen::Index spot = own; spot < scan.series.light.cols(); ++spot)
+                scan.series.light.col(spot) = late.series.light.col(0);
+            EXPECT_EQ(picturesLate(scan, wordsIn(scan)), std::nullopt) << own << ", " << others << ", seed " << seed;
+        }
 }
 
 // Half of the spots end in the middle, and as many begin there.

@@ -250,6 +250,18 @@ TEST(SpotFit, WhereTheMiddleIsBlindTheRimShowsLightAndPlace) {
         blindMiddle(dark.window, 3);
         EXPECT_FALSE(fitSpot(dark.window).has_value()) << i;
     }
+    // Nor does a slope, as of an LED beside it.
+    for (int i = 0; i < kDraws; ++i) {
+        Drawn slope = drawSpot(random, 0, 1.2, 1e9, 0.4, 0);
+        const Vector2d along(random.uniform(-2, 2), random.uniform(-2, 2));
+        for (Eigen::Index row = 0; row < 11; ++row) {
+            for (Eigen::Index col = 0; col < 11; ++col)
+                slope.window.value(row, col) +=
+                    along.dot(Vector2d(static_cast<double>(col - 5), static_cast<double>(row - 5)));
+        }
+        blindMiddle(slope.window, 3);
+        EXPECT_FALSE(fitSpot(slope.window).has_value()) << i;
+    }
 }
 
 TEST(SpotFit, ABlindMiddleIsNoNarrowCoreInAStrongHalo) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/geometry/statistics.h"
@@ -12,6 +13,9 @@ namespace skincal {
 namespace {
 
 constexpr double kStrong = 3;
+constexpr double kLeastStep = 0.05;
+constexpr double kLeastPart = 0.3;  ///< of a step that levels and surroundings must follow
+constexpr float kDark = 8;          // what is darker has no ground to speak of
 constexpr std::size_t kFewest = 3;
 
 /// A spot that tells of the exposure.
@@ -20,6 +24,7 @@ struct Witness {
     float ground = 0;      ///< brighter than its surroundings without its LED, over their level
     double strongest = 0;  ///< of its LED's light, but for the top tenth, which a flash may have
     double highest = 0;    ///< the same of its grey level
+    double around = 0;     ///< level of its surroundings, the median
     std::vector<std::uint8_t> isBlack;
 };
 
@@ -27,6 +32,7 @@ struct Witness {
 struct PlaneShare {
     double gain = 1;
     double level = 1;
+    std::optional<double> around{};  ///< of their surroundings, where these are no darker than a dark room
 };
 
 /// The value that nine tenths of them stay below.
@@ -34,6 +40,11 @@ double highOf(std::vector<float>& values) {
     const auto high = values.begin() + static_cast<std::ptrdiff_t>(9 * (values.size() - 1) / 10);
     std::nth_element(values.begin(), high, values.end());
     return static_cast<double>(*high);
+}
+float middleOf(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 /// That one quarter of them stays below: of what blinks a balanced word, about the middle of what is dark.
 double lowOf(std::vector<float>& values) {
@@ -44,7 +55,6 @@ double lowOf(std::vector<float>& values) {
 
 /// How much brighter than its surroundings a spot is while its LED is dark, over their level.
 float groundOf(const SpotSeries& series, Eigen::Index spot, std::vector<float>& values) {
-    constexpr float kDark = 8;  // what is darker has no ground to speak of
     for (std::size_t k = 0; k < values.size(); ++k) {
         const auto plane = static_cast<Eigen::Index>(k);
         values[k] = series.light(plane, spot) / std::max(kDark, series.around(plane, spot));
@@ -65,6 +75,8 @@ std::optional<Witness> witnessOf(const SpotSeries& series, Eigen::Index spot, do
         return std::nullopt;
     each = series.light.col(spot) + series.around.col(spot);
     witness.highest = highOf(values);
+    each = series.around.col(spot);
+    witness.around = static_cast<double>(middleOf(values));
     witness.isBlack = blackPlanes(series.around.col(spot));
     return witness;
 }
@@ -129,21 +141,33 @@ std::optional<PlaneShare> shareIn(const SpotSeries& series, Eigen::Index plane, 
         return std::nullopt;
     // A lamp leaves less of its range to a clipped LED; then the spots are brighter, as a shorter exposure makes none.
     std::vector<double> levels;
+    std::vector<double> around;
     for (auto share = shining; share != shares.end(); ++share) {
         const Witness& one = *share->second;
         levels.push_back(static_cast<double>(series.light(plane, one.spot) + series.around(plane, one.spot)) /
                          one.highest);
+        if (one.around > static_cast<double>(kDark))
+            around.push_back(static_cast<double>(series.around(plane, one.spot)) / one.around);
     }
     std::nth_element(shining, shining + count / 2, shares.end(), less);
-    return PlaneShare{(shining + count / 2)->first, median(std::move(levels))};
+    PlaneShare result{(shining + count / 2)->first, median(std::move(levels))};
+    if (2 * around.size() > static_cast<std::size_t>(count))
+        result.around = median(std::move(around));
+    return result;
+}
+
+/// Whether surroundings change as LEDs do, as far as they can be seen: after a knock they do not.
+bool surroundingsFollow(const PlaneShare& share, const PlaneShare& reference) {
+    const double step = std::log(share.gain / reference.gain);
+    if (!share.around || !reference.around || std::abs(step) < kLeastStep)
+        return true;
+    return std::log(*share.around / *reference.around) / step >= kLeastPart;
 }
 
 }  // namespace
 
 std::vector<double> exposureGains(const SpotSeries& series, std::span<const double> sigma,
                                   std::span<const std::size_t> litCount) {
-    constexpr double kLeastStep = 0.05;
-    constexpr double kLeastPart = 0.3;
     std::vector<double> gains(static_cast<std::size_t>(series.light.rows()), 1);
     const std::size_t leds = litCount.empty() ? 0 : *std::max_element(litCount.begin(), litCount.end());
     const std::vector<Witness> witnesses = witnessesIn(series, sigma, leds);
@@ -166,12 +190,19 @@ std::vector<double> exposureGains(const SpotSeries& series, std::span<const doub
         return gains;
     const double usual = median(std::move(told));
     const double usualLevel = median(std::move(levels));
+    // The plane that is most as usual.
+    const auto away = [&](const std::optional<PlaneShare>& share) {
+        return share ? std::abs(std::log(share->gain / usual)) : std::numeric_limits<double>::infinity();
+    };
+    const auto reference = *std::min_element(shares.begin(), shares.end(),
+                                             [&](const auto& a, const auto& b) { return away(a) < away(b); });
     for (std::size_t k = 0; k < gains.size(); ++k) {
         if (!shares[k])
             continue;
         const double gain = shares[k]->gain / usual;
         const bool isStep = std::abs(gain - 1) >= kLeastStep &&
-                            !(std::log(shares[k]->level / usualLevel) / std::log(gain) < kLeastPart);
+                            !(std::log(shares[k]->level / usualLevel) / std::log(gain) < kLeastPart) &&
+                            surroundingsFollow(*shares[k], *reference);
         gains[k] = isStep ? gain : 1;
     }
     return gains;

@@ -21,7 +21,12 @@ Eigen::VectorXd offDrift(const Codebook& codebook, const Ambient& ambient, const
 
 SeriesFit::SeriesFit(const Codebook& codebook, const FittedSeries& series, const Ambient& ambient,
                      const WordMatchOptions& options)
-    : codebook_(codebook), ambient_(ambient), options_(options), y_(series.y), cameraSigma_(series.sigma) {
+    : codebook_(codebook),
+      ambient_(ambient),
+      options_(options),
+      y_(series.y),
+      cameraSigma_(series.sigma),
+      division_(options) {
     for (std::size_t k = 0; k < series.atLeast.size(); ++k) {
         if (series.atLeast[k] != 0)
             bounds_.push_back(k);
@@ -72,7 +77,7 @@ Explanation SeriesFit::explain(const std::vector<std::size_t>& words) {
         Eigen::VectorXd residuals = residualsFromLevels(words[0]);
         met_.assign(used.size(), 0);
         meetBounds(residuals, met_);
-        (void)divide(residuals, used);
+        (void)division_.divide(residuals, sigma_, used);
         Explanation other = refine(words, std::move(used));
         if (other.cost < best.cost)
             best = std::move(other);
@@ -197,56 +202,6 @@ Eigen::VectorXd SeriesFit::residualsFromLevels(std::size_t word) const {
     return residuals;
 }
 
-/// The cheapest division of the planes into used and disturbed ones (Viterbi), and its cost. A plane is used, the first
-/// of a run of disturbed ones, the second, or a later one.
-double SeriesFit::divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used) {
-    enum State : std::uint8_t { kUsed, kFirst, kSecond, kLater };
-    constexpr double kNever = std::numeric_limits<double>::infinity();
-    const double enter = options_.outlier * options_.outlier;
-    const double stay = options_.hiddenCost * options_.hiddenCost;
-    // Where each plane is worth less than the cheapest disturbed one, and that is nearly everywhere, none is.
-    const double scale = 1 / (sigma_ * sigma_);
-    if (scale * residuals.cwiseAbs2().maxCoeff() <= stay) {
-        std::fill(used.begin(), used.end(), std::uint8_t{1});
-        return scale * residuals.squaredNorm();
-    }
-    double isUsed = 0;
-    double first = kNever;
-    double second = kNever;
-    double later = kNever;
-    std::uint8_t cheapest = kUsed;
-    const auto findCheapest = [&] {
-        const double disturbed = std::min(first, std::min(second, later));
-        cheapest = disturbed == first ? kFirst : disturbed == second ? kSecond : kLater;
-        cheapest = disturbed < isUsed ? cheapest : std::uint8_t{kUsed};
-        return std::min(isUsed, disturbed);
-    };
-    // Of a used plane which state was before it, and of a later one; the others leave no choice.
-    from_.resize(used.size());
-    for (std::size_t k = 0; k < used.size(); ++k) {
-        const double residual = residuals[static_cast<Eigen::Index>(k)];
-        const double least = findCheapest();
-        from_[k] = {cheapest, second < later ? std::uint8_t{kSecond} : std::uint8_t{kLater}};
-        later = std::min(second, later) + stay;
-        second = first + enter;
-        first = isUsed + enter;
-        isUsed = least + scale * residual * residual;
-    }
-    const double least = findCheapest();
-    std::uint8_t state = cheapest;
-    for (std::size_t k = used.size(); k-- > 0;) {
-        used[k] = state == kUsed ? 1 : 0;
-        state = state == kUsed ? from_[k][0] : state == kLater ? from_[k][1] : static_cast<std::uint8_t>(state - 1);
-    }
-    return least;
-}
-
-double SeriesFit::costOfNothing() const {
-    const auto planes = static_cast<double>(codebook_.planes());
-    return std::min(planes, 2.0) * options_.outlier * options_.outlier +
-           std::max(0.0, planes - 2) * options_.hiddenCost * options_.hiddenCost;
-}
-
 /// Nothing where the planes can't tell the columns apart.
 std::optional<SeriesFit::Solution> SeriesFit::solve(const std::vector<std::uint8_t>& fitted) const {
     UnknownsSquare N = N_.topLeftCorner(count_, count_);
@@ -335,7 +290,7 @@ Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector
         if (!solution) {
             // So few planes are left that nothing is known: as if all of them were disturbed.
             if (words.empty())
-                e.cost = costOfNothing();
+                e.cost = division_.costOfNothing(codebook_.planes());
             return e;
         }
         setResiduals(*solution);
@@ -349,7 +304,7 @@ Explanation SeriesFit::refine(const std::vector<std::size_t>& words, std::vector
             continue;
         }
         hasMet = true;
-        const double cost = divide(residuals_, next_) + ridge() * std::pow(e.ambient / sigma_, 2);
+        const double cost = division_.divide(residuals_, sigma_, next_) + ridge() * std::pow(e.ambient / sigma_, 2);
         const bool settled = next_ == used && nextMet_ == met_;
         std::swap(used, next_);
         std::swap(met_, nextMet_);

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/vision/plane_division.h"
 #include "core/vision/word_match.h"
 
 namespace skincal {
@@ -82,13 +82,11 @@ class SeriesFit {
     void meetBounds(Eigen::VectorXd& residuals, std::vector<std::uint8_t>& met) const;
     void judge(const Solution& solution, bool settled, Explanation& e) const;
     void setResiduals(const Solution& solution);
-    [[nodiscard]] double costOfNothing() const;
     /// Ambient::ridge is for camera noise; here LEDs that shine unevenly are noise, too.
     [[nodiscard]] double ridge() const { return ambient_.ridge * std::pow(sigma_ / cameraSigma_, 2); }
     [[nodiscard]] bool hasAmbient() const { return ambient_.light.size() > 0; }
     [[nodiscard]] std::vector<std::uint8_t> calmPlanes(const Explanation& e) const;
     [[nodiscard]] bool mayBeDisturbance(const Explanation& e) const;
-    [[nodiscard]] double divide(const Eigen::VectorXd& residuals, std::vector<std::uint8_t>& used);
     [[nodiscard]] Eigen::VectorXd residualsFromLevels(std::size_t word) const;
 
     const Codebook& codebook_;
@@ -98,6 +96,7 @@ class SeriesFit {
     std::vector<std::size_t> bounds_;  ///< planes whose values are lower bounds
     double cameraSigma_;
     double sigma_;  ///< with the uneven brightness of the LEDs
+    PlaneDivision division_;
     // Planes x unknowns: drift, ambient off its mean, and then the columns of what is being fitted.
     Eigen::MatrixXd columns_;
     Eigen::Index baseCount_ = 0;
@@ -111,7 +110,6 @@ class SeriesFit {
     std::vector<std::uint8_t> fitted_;
     std::vector<std::uint8_t> met_;
     std::vector<std::uint8_t> nextMet_;
-    std::vector<std::array<std::uint8_t, 2>> from_;
 };
 
 }  // namespace skincal

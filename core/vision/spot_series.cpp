@@ -11,7 +11,7 @@ namespace skincal {
 namespace {
 
 constexpr int kCore = 2;
-constexpr int kMiddle = 1;
+constexpr int kMiddle = 0;
 // exp(-r^2 / 2 s^2) with s = 1.2 at r = 0, 1, 2.
 constexpr std::array<double, 3> kTap{1.0, 0.70665, 0.24935};
 constexpr int kLargestRadius = 30;

@@ -92,6 +92,17 @@ TEST(ExposureGains, ALampThatGoesBlackIsNoExposure) {
     }
 }
 
+TEST(ExposureGains, AKnockThatLeavesSpotsHalfTheirLightIsNoExposure) {
+    constexpr std::size_t leds = 14;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        const std::vector<Plane> planes(18);
+        Room room(planes, leds, 150, 50, seed);
+        for (std::size_t k = 12; k < planes.size(); ++k)
+            room.series.light.row(static_cast<Eigen::Index>(k)).head(leds) *= 0.5F;
+        EXPECT_EQ(room.gains(), std::vector<double>(planes.size(), 1)) << seed;
+    }
+}
+
 TEST(ExposureGains, WithoutLedsNothingIsTold) {
     const std::vector<Plane> planes(24);
     EXPECT_EQ(Room(planes, 40, 0, 50, 1).gains(), std::vector<double>(24, 1));

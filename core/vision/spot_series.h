@@ -35,7 +35,7 @@ struct SpotSeries {
     Eigen::MatrixXf around;             ///< planes x spots, SpotBrightness::around
     Eigen::VectorXd level;              ///< per spot, SpotBrightness::level at its highest
     std::vector<std::uint8_t> clipped;  ///< per spot, 1 where a pixel of its window is clipped in any plane
-    /// Planes x spots, 1 where a pixel next to the spot's middle is clipped: its light is that much, or more.
+    /// Planes x spots, 1 where the pixel in the spot's middle is clipped: its light is that much, or more.
     Eigen::Array<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic> isFull;
 
     SpotSeries(std::size_t planes, std::size_t spots);

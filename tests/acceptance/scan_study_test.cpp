@@ -41,7 +41,7 @@ TEST_P(ScansIn, FindWhatIsVisibleAndNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(
     Rooms, ScansIn,
-    ::testing::Values(Expectation{Disturbance::None, 0, 0.995}, Expectation{Disturbance::Ambient, 240, 0.99},
+    ::testing::Values(Expectation{Disturbance::None, 0, 0.995}, Expectation{Disturbance::Ambient, 240, 0.995},
                       Expectation{Disturbance::Reflection, 0.3, 0.995}, Expectation{Disturbance::Screen, 250, 0.995},
                       Expectation{Disturbance::Mains50, 100, 0.995}, Expectation{Disturbance::Mains60, 100, 0.995},
                       Expectation{Disturbance::Sun, 2, 0.995}, Expectation{Disturbance::Person, 1, 0.995},

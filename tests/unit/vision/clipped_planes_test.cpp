@@ -9,24 +9,14 @@
 #include <optional>
 
 #include "core/geometry/random.h"
-#include "core/vision/coded_scan.h"
 #include "core/vision/surroundings.h"
 #include "core/vision/word_match.h"
+#include "tests/unit/vision/coded_book.h"
 
 namespace skincal {
 namespace {
 
 using Planes = std::vector<std::uint8_t>;
-
-Codebook codebookOf(std::size_t count, std::uint64_t seed) {
-    std::vector<ModuleId> modules;
-    for (std::size_t u = 0; u < count; ++u)
-        modules.emplace_back(static_cast<std::uint32_t>(10 + u));
-    std::vector<FrameInfo> frames;
-    for (auto& lit : codedScan(modules, seed))
-        frames.push_back({{}, std::move(lit), {}, 0});
-    return makeCodebook(litWords(modules, frames).value());
-}
 
 /// What the light of a room does from plane to plane, grey levels.
 using Room = std::function<double(double plane, double planes)>;
@@ -81,7 +71,7 @@ TEST_P(ClippedBy, LedsAreNamedAndGroundIsNot) {
     for (const auto& [modules, share] : {std::pair(28U, 94), std::pair(55U, 94), std::pair(200U, 80)}) {
         int named = 0;
         for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
-            const Codebook codebook = codebookOf(modules, seed);
+            const Codebook codebook = testing::codedBook(modules, seed);
             Random random(seed, "who");
             const std::size_t module = random.index(modules);
             const SeriesMatch led =

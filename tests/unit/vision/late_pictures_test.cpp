@@ -3,23 +3,18 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/random.h"
-#include "core/vision/coded_scan.h"
+#include "tests/unit/vision/coded_book.h"
 
 namespace skincal {
 namespace {
 
 /// Words of so many modules, and spots that show what was lit so many pictures before; room for other spots.
 SpotScan scanOf(std::size_t count, int late, double noise, std::uint64_t seed, std::size_t others = 0) {
-    std::vector<ModuleId> modules;
-    for (std::size_t u = 0; u < count; ++u)
-        modules.emplace_back(static_cast<std::uint32_t>(10 + u));
-    std::vector<FrameInfo> frames;
-    for (auto& lit : codedScan(modules, seed))
-        frames.push_back({{}, std::move(lit), {}, 0});
     SpotScan scan;
-    scan.codebook = makeCodebook(litWords(modules, frames).value());
-    scan.series = SpotSeries(frames.size(), count + others);
-    scan.gains.assign(frames.size(), 1);
+    scan.codebook = testing::codedBook(count, seed);
+    const std::size_t planes = scan.codebook.planes();
+    scan.series = SpotSeries(planes, count + others);
+    scan.gains.assign(planes, 1);
     scan.sigma.assign(count + others, noise);
     Random random(seed, "late pictures");
     Eigen::MatrixXf& light = scan.series.light;

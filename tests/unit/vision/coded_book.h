@@ -1,0 +1,19 @@
+#pragma once
+
+#include "core/vision/codebook.h"
+#include "core/vision/coded_scan.h"
+
+namespace skincal::testing {
+
+/// The words that a scan of so many modules lights.
+inline Codebook codedBook(std::size_t count, std::uint64_t seed) {
+    std::vector<ModuleId> modules;
+    for (std::size_t u = 0; u < count; ++u)
+        modules.emplace_back(static_cast<std::uint32_t>(10 + u));
+    std::vector<FrameInfo> frames;
+    for (auto& lit : codedScan(modules, seed))
+        frames.push_back({{}, std::move(lit), {}, 0});
+    return makeCodebook(litWords(modules, frames).value());
+}
+
+}  // namespace skincal::testing

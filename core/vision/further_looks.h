@@ -12,7 +12,7 @@ namespace skincal {
 
 struct FurtherLookOptions {
     std::size_t anchors = 4;      ///< modules that were found, lit again: they tell whether the camera moved meanwhile
-    std::size_t maxFrames = 300;  ///< of all further looks of a view together
+    std::size_t maxFrames = 600;  ///< of all further looks of a view together: 20 s at 30 frames/s
 
     double maxMotion_px = 1;  ///< of the camera since the first look that counts; then there are no more
 

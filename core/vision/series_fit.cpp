@@ -66,12 +66,15 @@ void SeriesFit::appendColumn(std::span<const std::size_t> planes) {
     moment_[count_++] = sum;
 }
 
-Explanation SeriesFit::explain(const std::vector<std::size_t>& words) {
+Explanation SeriesFit::explainPlainly(const std::vector<std::size_t>& words) {
     count_ = baseCount_;
     for (const std::size_t word : words)
         appendColumn(codebook_.lit[word]);
-    // The best of two starts: plain least squares, and (for single words) levels that hidden planes don't move.
-    Explanation best = refine(words, std::vector<std::uint8_t>(codebook_.planes(), 1));
+    return refine(words, std::vector<std::uint8_t>(codebook_.planes(), 1));
+}
+
+Explanation SeriesFit::explain(const std::vector<std::size_t>& words) {
+    Explanation best = explainPlainly(words);
     if (words.size() == 1 && !best.isClean()) {
         std::vector<std::uint8_t> used(codebook_.planes());
         Eigen::VectorXd residuals = residualsFromLevels(words[0]);
@@ -140,7 +143,7 @@ bool SeriesFit::believable(const Explanation& e) const {
     // Of two words there are so many that some will fit what two do not make, once planes may be left out.
     const bool two = e.words.size() > 1;
     const double most = two ? 0 : e.runs > 1 ? options_.maxDisturbed : options_.maxHidden;
-    if (!e.significant || mayBeDisturbance(e))
+    if (!e.significant)
         return false;
     // Bounds that are met say little, however cheap they are.
     constexpr double kLeastFitted = 0.25;
@@ -148,7 +151,7 @@ bool SeriesFit::believable(const Explanation& e) const {
         return false;
     return static_cast<double>(e.disturbed) <= most * static_cast<double>(codebook_.planes()) &&
            e.reducedCost <= options_.maxReducedCost &&
-           e.explained >= (two ? options_.minExplainedByTwo : options_.minExplained);
+           e.explained >= (two ? options_.minExplainedByTwo : options_.minExplained) && !mayBeDisturbance(e);
 }
 
 double SeriesFit::costOfDarkness(const std::vector<std::uint8_t>& used) {

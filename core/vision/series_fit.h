@@ -57,8 +57,11 @@ class SeriesFit {
     SeriesFit(const Codebook& codebook, const FittedSeries& series, const Ambient& ambient,
               const WordMatchOptions& options);
 
+    /// The best of two starts: plain least squares, and (for single words) levels that hidden planes don't move.
     /// @param words  none, one or two
     [[nodiscard]] Explanation explain(const std::vector<std::size_t>& words);
+    /// From plain least squares alone, for half the price: what hidden planes mislead may cost too much.
+    [[nodiscard]] Explanation explainPlainly(const std::vector<std::size_t>& words);
     /// Cost of no LED at all, only drift, ambient and disturbances; or of a single step besides, as a knock of the
     /// camera or somebody who stays makes one, which costs as much as a disturbance.
     /// @param used  of the best explanation: steps are tried where it begins or ends to leave planes out

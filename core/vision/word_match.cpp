@@ -69,12 +69,14 @@ class Contest {
 };
 
 void Contest::enterLeaders(std::span<const RankedWord> ranked) {
-    // Where the first leaves nothing to explain, only the next few could have been meant.
+    // Where the first leaves nothing to explain, only the next few could have been meant. Nor has anything hidden the
+    // LED then, and which planes speak against the others is plain.
     constexpr std::size_t kRivals = 3;
     for (const RankedWord& word : ranked) {
-        if (tried_.size() > kRivals && tried_.front().isClean())
+        const bool isDone = !tried_.empty() && tried_.front().isClean();
+        if (isDone && tried_.size() > kRivals)
             break;
-        tried_.push_back(fit_.explain({word.word}));
+        tried_.push_back(isDone ? fit_.explainPlainly({word.word}) : fit_.explain({word.word}));
     }
 }
 

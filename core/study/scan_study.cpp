@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <map>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -62,7 +63,7 @@ class StudiedScan {
         }
         if (!view)
             return {};
-        ScanScore result = scoreOf(world_, *view, bounds());
+        ScanScore result = scoreOf(world_, *view, bounds(*view));
         result.refused = isRefused_ ? 1 : 0;
         result.frames = frames_.size();
         result.seconds = seconds_;
@@ -106,13 +107,30 @@ class StudiedScan {
         return view;
     }
 
-    std::vector<std::optional<double>> bounds() {
+    /// Of each centre over the pictures of the look that found it: the others don't count in it.
+    std::vector<std::optional<double>> bounds(const ViewDetections& view) {
         if (!isSteady(what_.disturbance) || pictures_.empty())
             return {};
-        // Not every detector has looked at all of them.
-        for (std::size_t k = 0; k < frames_.size(); ++k)
-            (void)picture(k);
-        return centreBounds(world_, renderer_.spots(), frames_, pictures_);
+        std::map<std::size_t, std::vector<ModuleId>> foundIn;
+        for (std::size_t i = 0; i < view.found.size(); ++i)
+            foundIn[view.readings.empty() ? 0 : view.readings[i].look].push_back(view.found[i].module);
+        const auto index = world_.skin.indexById();
+        std::vector<std::optional<double>> result(modules_.size());
+        for (const auto& [look, found] : foundIn) {
+            const auto isBefore = [](const FrameInfo& frame, std::size_t of) { return frame.look < of; };
+            const auto begin = std::lower_bound(frames_.begin(), frames_.end(), look, isBefore);
+            const auto end = std::lower_bound(begin, frames_.end(), look + 1, isBefore);
+            const auto first = static_cast<std::size_t>(begin - frames_.begin());
+            const auto count = static_cast<std::size_t>(end - begin);
+            // Not every detector has looked at all of them.
+            for (std::size_t k = 0; k < count; ++k)
+                (void)picture(first + k);
+            const auto here = centreBounds(world_, renderer_.spots(), {begin, end},
+                                           std::span<const cv::Mat>(pictures_).subspan(first, count));
+            for (const ModuleId module : found)
+                result[index.at(module)] = here[index.at(module)];
+        }
+        return result;
     }
 
     World world_;

@@ -63,7 +63,7 @@ AmplitudeMap::AmplitudeMap(const SpotCandidate& spot, int radius, cv::Size pictu
         lit_[plane] = 1;
     const Eigen::Index pixels = rect_.area();
     Eigen::Index columns = kNoise;
-    if (filter_.clipped) {
+    if (filter_.doubtful) {
         calm_ = calmPlanes(filter_.around, filter_.gains, filter_.used);
         space_ = explainedSpace(codebook, filter_.words, calm_, ambient).cast<float>();
         columns = kExplained + space_.cols();
@@ -111,7 +111,7 @@ Eigen::MatrixXf AmplitudeMap::lightIn(std::span<const FramePlane* const> planes)
         for (int y = 0; y < rect_.height; ++y)
             plane.frame.values(rect_.x, rect_.y + y, rect_.width, plane.channel,
                                here.data() + static_cast<std::ptrdiff_t>(y) * rect_.width);
-        if (filter_.clipped)
+        if (filter_.doubtful)
             noteClipped(plane, here);
         here = (here - filter_.around[static_cast<Eigen::Index>(plane.plane)]) *
                static_cast<float>(1 / filter_.gains[plane.plane]);
@@ -127,7 +127,7 @@ Eigen::MatrixXf AmplitudeMap::factorsOf(std::span<const FramePlane* const> plane
         auto row = factors.row(static_cast<Eigen::Index>(i));
         row[kValue] = weights_[at];
         row[kVariance] = weights_[at] * weights_[at] / gain;
-        if (!filter_.clipped)
+        if (!filter_.doubtful)
             continue;
         row[kNoise] = isCalm(planes[i]->plane) ? 1 / gain : 0.0F;
         row.tail(space_.cols()) = space_.row(at);  // zero where it is not calm
@@ -164,7 +164,7 @@ SpotWindow AmplitudeMap::window() const {
     window.value = imageOf(kValue).cast<double>();
     window.variance = (read_ * squaredWeights_ + shot_ * (varianceOffset_ + imageOf(kVariance))).cast<double>();
     window.state.setConstant(rect_.height, rect_.width, PixelState::Good);
-    if (!filter_.clipped)
+    if (!filter_.doubtful)
         return window;
     float litPlanes = 0;
     for (std::size_t k = 0; k < lit_.size(); ++k)

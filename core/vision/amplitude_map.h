@@ -24,7 +24,8 @@ struct LightFilter {
     std::span<const double> gains{};  ///< per plane, of the exposure
     double sigma = 1;                 ///< of the spot's brightness, for how much it may follow its surroundings
     bool shared = false;              ///< the second word is that of another LED in the same spot
-    bool clipped = false;             ///< whether any pixel may be: to look costs as much as all the rest
+    /// Whether pixels may be clipped, or strayShare will be asked for: to look costs as much as all the rest.
+    bool doubtful = false;
 };
 
 /// One of a view's planes with its picture.
@@ -58,7 +59,7 @@ class AmplitudeMap {
     enum Column : std::uint8_t {
         kValue,     ///< the amplitude
         kVariance,  ///< of it, per variance of a pixel
-        kNoise,     ///< of the calm planes, per variance of a pixel; this and the following only where it is clipped
+        kNoise,     ///< of the calm planes, per variance of a pixel; this and the following only where it is doubtful
         kExplained  ///< from here on one per column of space_
     };
 
@@ -68,7 +69,7 @@ class AmplitudeMap {
     [[nodiscard]] Eigen::MatrixXf factorsOf(std::span<const FramePlane* const> planes) const;
     /// @param values  of the window's pixels in the plane
     void noteClipped(const FramePlane& plane, const Eigen::Ref<const Eigen::ArrayXf>& values);
-    [[nodiscard]] bool isCalm(std::size_t plane) const { return filter_.clipped && calm_[plane] != 0; }
+    [[nodiscard]] bool isCalm(std::size_t plane) const { return filter_.doubtful && calm_[plane] != 0; }
 
     cv::Rect rect_;
     int radius_;
@@ -85,7 +86,7 @@ class AmplitudeMap {
     float noiseOffset_ = 0;
     // … and a row of them per pixel.
     Eigen::MatrixXf sums_;
-    // Only where something is clipped: the squares of its light in calm planes, and in how many planes with the module
+    // Only where it is doubtful: the squares of its light in calm planes, and in how many planes with the module
     // lit it is clipped, and in how many others.
     Eigen::ArrayXf squares_;
     Eigen::ArrayXf clippedLit_;

@@ -99,12 +99,11 @@ tl::expected<ViewDetections, ScanError> decodeLook(std::span<const ModuleId> mod
     auto measured = measureSpots(modules, frames, *mixing ? unmixing(**mixing, load) : load, options, context);
     if (!measured)
         return tl::unexpected(std::move(measured.error()));
-    auto& [scan, matches, moved_px, verdicts] = *measured;
+    auto& [scan, matches, moved_px, suited, verdicts] = *measured;
     // What moves leaves light that its word does not explain, about as much as the square of the way over that of a
     // spot's width.
-    DecoderOptions moving = options;
-    moving.maxStrayShare += std::pow(std::min(moved_px.value_or(0), options.maxMotion_px), 2);
-    const std::vector<Sighting> sightings = sightingsOf(scan, matches, moving, verdicts);
+    suited.maxStrayShare += std::pow(std::min(moved_px.value_or(0), options.maxMotion_px), 2);
+    const std::vector<Sighting> sightings = sightingsOf(scan, matches, suited, verdicts);
     // Who stops in front of a part of the skin hides it as suddenly as a knock does; the rest has not moved then.
     if (!moved_px || *moved_px > 0)
         moved_px = std::max(moved_px, knocked_px(sightings, matches));

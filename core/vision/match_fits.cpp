@@ -6,15 +6,17 @@ namespace skincal {
 namespace {
 
 // Clipping hides a second LED from the series, which then looks like a disturbance, and makes light no longer add up.
+// And the words of two LEDs may add up to those of two others, but where one of them is brighter.
 double strayIn(const SpotScan& scan, const DecoderOptions& options, const MatchedSpot& match, std::size_t j,
                const SpotWindow& window, const SpotFit& fit) {
     constexpr double kNear_px = 3.5;
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
-    if (sharesSpot(match.series, j))
-        return isBlindNear(window, fit.centre, options.maxShift_px) ? kUnknown : 0;
-    if (!fit.clipped)
-        return 0;
-    return hasMoreLight(scan, match) ? kUnknown : match.maps[j].strayShare(fit.centre, kNear_px);
+    const bool isShared = sharesSpot(match.series, j);
+    if (isShared && isBlindNear(window, fit.centre, options.maxShift_px))
+        return kUnknown;
+    if (!isShared && fit.clipped && hasMoreLight(scan, match))
+        return kUnknown;
+    return isShared || fit.clipped ? match.maps[j].strayShare(fit.centre, kNear_px) : 0;
 }
 
 }  // namespace

@@ -71,6 +71,35 @@ void dropStrangeWidths(const SpotScan& scan, const std::vector<MatchedSpot>& mat
     });
 }
 
+// Where the words of two LEDs add up to those of two others, and one of them is known, the others are both taken for
+// the other one; but no two are in one place.
+void dropSamePlaces(const SpotScan& scan, const std::vector<MatchedSpot>& matches, std::vector<Sighting>& sightings,
+                    Verdicts& verdicts) {
+    constexpr double kSamePlace_px = 0.7;
+    std::sort(sightings.begin(), sightings.end(), [](const Sighting& a, const Sighting& b) {
+        return std::make_tuple(a.fit.centre.x(), a.fit.centre.y(), a.module) <
+               std::make_tuple(b.fit.centre.x(), b.fit.centre.y(), b.module);
+    });
+    std::vector<std::uint8_t> isTaken(sightings.size(), 0);
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+        const Vector2d& here = sightings[i].fit.centre;
+        for (std::size_t j = i + 1; j < sightings.size() && sightings[j].fit.centre.x() - here.x() < kSamePlace_px;
+             ++j) {
+            if (sightings[j].module != sightings[i].module && (sightings[j].fit.centre - here).norm() < kSamePlace_px)
+                isTaken[i] = isTaken[j] = 1;
+        }
+    }
+    std::size_t at = 0;
+    std::erase_if(sightings, [&](const Sighting& sighting) {
+        const bool isSame = isTaken[at++] != 0;
+        if (isSame)
+            verdicts.note(sighting.module, DetectionVerdict::Ambiguous, Undetected::Cause::Alike,
+                          Sentence::saying("its spot is that of another module, too"),
+                          nearestSpot(scan, matches[sighting.match], sighting.module));
+        return isSame;
+    });
+}
+
 }  // namespace
 
 std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<MatchedSpot>& matches,
@@ -96,8 +125,10 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
                 continue;
             }
             if (match.strays[j] > options.maxStrayShare) {
-                verdicts.note(module, DetectionVerdict::Ambiguous, Undetected::Cause::TooBright,
-                              Sentence::saying("its spot is clipped and has other light in it"),
+                verdicts.note(module, DetectionVerdict::Ambiguous,
+                              fit->clipped ? Undetected::Cause::TooBright : Undetected::Cause::Alike,
+                              fit->clipped ? Sentence::saying("its spot is clipped and has other light in it")
+                                           : Sentence::saying("its spot has other light in it"),
                               nearestSpot(scan, match, module));
                 continue;
             }
@@ -105,6 +136,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
         }
     }
     dropStrangeWidths(scan, matches, sightings, verdicts);
+    dropSamePlaces(scan, matches, sightings, verdicts);
     // Brightest first; ties by place, so that the result does not depend on anything else.
     std::sort(sightings.begin(), sightings.end(), [](const Sighting& a, const Sighting& b) {
         return std::make_tuple(a.module, -a.fit.flux(), a.fit.centre.x(), a.fit.centre.y()) <

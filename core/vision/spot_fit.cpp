@@ -104,8 +104,8 @@ Sentence sentenceOf(SpotFitError error) {
 
 bool SpotFitOptions::validate() const {
     return haloWidth > 1 && minWidth_px > 0 && maxWidth_px > minWidth_px && prior.logWidthSigma > 0 &&
-           prior.haloSigma > 0 && minSignificance > 0 && minExplained > 0 && minExplained < 1 && maxReducedChi2 > 0 &&
-           sigmaFloor_px >= 0 && minPixels >= 7;
+           prior.haloSigma > 0 && minSignificance > 0 && minExplained > 0 && minExplained <= minExplainedNarrow &&
+           minExplainedNarrow < 1 && maxReducedChi2 > 0 && sigmaFloor_px >= 0 && minPixels >= 7;
 }
 
 double SpotFit::flux() const {
@@ -153,8 +153,9 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
     if (clipped == 0 && !(squaredSignificance() >= std::pow(options.minSignificance, 2)))
         return tl::unexpected(SpotFitError::NoLight);
     const double width = std::exp((*parameters)[3]);
+    const double least = width <= options.narrow_px ? options.minExplainedNarrow : options.minExplained;
     if (!(width >= options.minWidth_px && width <= options.maxWidth_px) ||
-        (chi2 > options.maxReducedChi2 && model.explained(*parameters).share < options.minExplained))
+        (chi2 > options.maxReducedChi2 && model.explained(*parameters).share < least))
         return tl::unexpected(SpotFitError::WrongShape);
 
     SpotFit fit;

@@ -36,11 +36,13 @@ struct SpotFitOptions {
     double haloWidth = 2.5;     ///< halo's width over the core's
     double minWidth_px = 0.35;  ///< standard deviation of the core; below it is a hot pixel
     double maxWidth_px = 4.0;
-    double minSignificance = 6;    ///< amplitude over its standard deviation; with a blind middle, light over a slope
-    double minExplained = 0.8;     ///< share of the light's variation that a spot of this shape must explain …
-    double maxReducedChi2 = 4;     ///< … unless the misfit is no more than this many times the noise
-    double sigmaFloor_px = 0.001;  ///< what no model of a lens gets right, added in quadrature
-    int minPixels = 16;            ///< pixels that are not clipped
+    double minSignificance = 6;  ///< amplitude over its standard deviation; with a blind middle, light over a slope
+    double narrow_px = 1.6;      ///< a spot no wider than this has the lens's shape; a wider one may have the LED's own
+    double minExplained = 0.8;   ///< share of the light's variation that a spot of this shape must explain …
+    double minExplainedNarrow = 0.92;  ///< … and must of a narrow one …
+    double maxReducedChi2 = 4;         ///< … unless the misfit is no more than this many times the noise
+    double sigmaFloor_px = 0.001;      ///< what no model of a lens gets right, added in quadrature
+    int minPixels = 16;                ///< pixels that are not clipped
 
     [[nodiscard]] bool validate() const;
 };

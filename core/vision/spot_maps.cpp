@@ -1,6 +1,7 @@
 #include "core/vision/spot_maps.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/vision/clipped_planes.h"
 #include "core/vision/neighbourhood.h"
@@ -31,14 +32,34 @@ std::vector<std::uint8_t> wholePlanes(const SpotScan& scan, const MatchedSpot& m
     return isEnough ? whole : used;
 }
 
+/// How far a spot's halo counts beside the noise where another's centre is told from, between a little and well beyond
+/// the window: each more word that light is told apart from costs some of it, and what is left out is taken for light.
+double reachOf(const SpotScan& scan, const MatchedSpot& match, const DecoderOptions& options) {
+    constexpr double kOfNoise = 0.05;
+    // In widths of a spot.
+    constexpr double kMiddle = 2;
+    constexpr double kLeast = 1.7;
+    constexpr double kMost = 4.2;
+    const SpotPrior& usual = options.fit.prior;
+    const double width = std::exp(usual.logWidth);
+    const auto ground = static_cast<double>(scan.series.around.col(static_cast<Eigen::Index>(match.candidate)).mean());
+    const double enough = kOfNoise * std::sqrt(scan.noise.variance(ground));
+    const double halo = usual.halo * match.series.amplitudes.front();
+    const double reach =
+        width * (kMiddle + options.fit.haloWidth * std::sqrt(2 * std::log(std::max(1.0, halo / enough))));
+    return std::clamp(reach, options.windowRadius + kLeast * width, options.windowRadius + kMost * width);
+}
+
 }  // namespace
 
 void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& options, std::vector<MatchedSpot>& matches,
                  ScanMotion& motion) {
     constexpr std::size_t kMostNeighbours = 12;
     constexpr std::size_t kWatched = 100;
-    // A halo of a few per cent reaches as far as that.
-    const Neighbourhood neighbourhood(matches, options.windowRadius + 5);
+    std::vector<double> reach_px(matches.size());
+    std::transform(matches.begin(), matches.end(), reach_px.begin(),
+                   [&](const MatchedSpot& match) { return reachOf(scan, match, options); });
+    const Neighbourhood neighbourhood(matches, std::move(reach_px));
     const auto filterOf = [&](const MatchedSpot& match, std::size_t j, const std::vector<std::size_t>& around,
                               const std::vector<std::uint8_t>& used) {
         LightFilter filter;
@@ -48,7 +69,7 @@ void prepareMaps(const SpotScan& scan, cv::Size size, const DecoderOptions& opti
         filter.gains = scan.gains;
         filter.sigma = scan.sigma[match.candidate];
         filter.shared = sharesSpot(match.series, j);
-        filter.clipped = scan.series.clipped[match.candidate] != 0;
+        filter.doubtful = filter.shared || scan.series.clipped[match.candidate] != 0;
         for (std::size_t other = 0; other < match.series.words.size(); ++other) {
             if (other != j)
                 filter.words.push_back(match.series.words[other]);

@@ -1,9 +1,11 @@
 #include "core/vision/spot_passes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <tuple>
 
+#include "core/geometry/statistics.h"
 #include "core/vision/frame_pass.h"
 #include "core/vision/late_pictures.h"
 #include "core/vision/match_fits.h"
@@ -16,6 +18,10 @@ namespace {
 
 using Done = tl::expected<void, ScanError>;
 
+// Of the work, what finds spots, and of what is left a go at identifying them: whether there is another is not known.
+constexpr double kFinding = 0.4;
+constexpr double kOneGo = 0.7;
+
 class SpotPasses {
   public:
     SpotPasses(std::span<const ModuleId> modules, std::span<const FrameInfo> frames, const FrameLoader& load,
@@ -27,12 +33,23 @@ class SpotPasses {
           context_(context),
           pass_(frames, load, words_.coloured, context),
           motion_(options.windowRadius, options.fit),
-          result_{{}, {}, {}, Verdicts(modules.size())} {
+          result_{{}, {}, {}, options, Verdicts(modules.size())} {
         result_.scan.codebook = makeCodebook(words_);
     }
 
     /// Where does anything blink?
     [[nodiscard]] Done find();
+    /// Who is it, and where exactly?
+    [[nodiscard]] Done identify();
+    /// Makes windows as large as the spots are that were identified, for another go; false where they are so already.
+    [[nodiscard]] bool widen();
+    [[nodiscard]] MeasuredSpots take() {
+        result_.moved_px = motion_.moved_px();
+        result_.options = options_;
+        return std::move(result_);
+    }
+
+  private:
     /// How does it blink?
     [[nodiscard]] Done read();
     /// Whose word is that?
@@ -40,12 +57,7 @@ class SpotPasses {
     /// What does its light look like, and where is its centre?
     [[nodiscard]] Done measure();
     [[nodiscard]] Done fit();
-    [[nodiscard]] MeasuredSpots take() {
-        result_.moved_px = motion_.moved_px();
-        return std::move(result_);
-    }
-
-  private:
+    /// @param from, to  of what there is to do after find()
     [[nodiscard]] Done eachPlane(const Sentence& stage, double from, double to,
                                  const std::function<void(const FramePlane&)>& visit);
     void addToMaps(std::span<const FramePlane> planes);
@@ -53,8 +65,9 @@ class SpotPasses {
     std::span<const ModuleId> modules_;
     std::span<const FrameInfo> frames_;
     LitWords words_;
-    const DecoderOptions& options_;
+    DecoderOptions options_;
     const RunContext& context_;
+    double done_ = 0;  ///< share of the work, before the next go
     FramePass pass_;
     cv::Size size_{};
     std::vector<SpotCandidate> candidates_;
@@ -64,10 +77,11 @@ class SpotPasses {
 
 Done SpotPasses::find() {
     SpotFinder finder(options_.candidates);
-    auto done = pass_.run(Sentence::saying("looking for spots"), 0, 0.4, [&](std::size_t, const FramePixels& frame) {
-        size_ = frame.size();
-        finder.add(frame, words_.coloured);
-    });
+    auto done =
+        pass_.run(Sentence::saying("looking for spots"), 0, kFinding, [&](std::size_t, const FramePixels& frame) {
+            size_ = frame.size();
+            finder.add(frame, words_.coloured);
+        });
     if (!done)
         return done;
     candidates_ = finder.candidates(modules_.size() * static_cast<std::size_t>(options_.candidatesPerModule) +
@@ -78,13 +92,15 @@ Done SpotPasses::find() {
         return std::make_tuple(a.y / kStripe, a.x, a.y) < std::make_tuple(b.y / kStripe, b.x, b.y);
     });
     result_.scan.noise = finder.noise();
+    done_ = kFinding;
     return {};
 }
 
 Done SpotPasses::eachPlane(const Sentence& stage, double from, double to,
                            const std::function<void(const FramePlane&)>& visit) {
     const std::size_t perFrame = words_.planesPerFrame();
-    return pass_.run(stage, from, to, [&](std::size_t k, const FramePixels& frame) {
+    const double share = kOneGo * (1 - done_);
+    return pass_.run(stage, done_ + share * from, done_ + share * to, [&](std::size_t k, const FramePixels& frame) {
         for (std::size_t plane = k * perFrame; plane < (k + 1) * perFrame; ++plane)
             visit({plane, words_.planes[plane].channel, frame});
     });
@@ -95,7 +111,7 @@ Done SpotPasses::read() {
     if (candidates_.empty())
         return {};
     scan.series = SpotSeries(scan.codebook.planes(), candidates_.size());
-    auto done = eachPlane(Sentence::saying("reading spots"), 0.4, 0.75, [&](const FramePlane& one) {
+    auto done = eachPlane(Sentence::saying("reading spots"), 0, 0.6, [&](const FramePlane& one) {
         scan.series.read(one.frame, candidates_, options_.windowRadius, one.plane, one.channel);
     });
     if (done)
@@ -138,7 +154,7 @@ Done SpotPasses::measure() {
     // Some pictures at a time: all maps together are larger than caches are, each is not.
     constexpr std::size_t kAtOnce = 16;
     std::vector<FramePlane> waiting;
-    auto done = eachPlane(Sentence::saying("measuring spots"), 0.75, 1, [&](const FramePlane& one) {
+    auto done = eachPlane(Sentence::saying("measuring spots"), 0.6, 1, [&](const FramePlane& one) {
         waiting.push_back(one);
         if (waiting.size() < kAtOnce)
             return;
@@ -157,6 +173,46 @@ Done SpotPasses::fit() {
     return {};
 }
 
+Done SpotPasses::identify() {
+    for (const auto step : {&SpotPasses::read, &SpotPasses::match, &SpotPasses::measure, &SpotPasses::fit}) {
+        if (auto done = (this->*step)(); !done)
+            return done;
+    }
+    return {};
+}
+
+bool SpotPasses::widen() {
+    constexpr std::size_t kFewest = 3;
+    constexpr double kWidths = 4.3;
+    constexpr double kShifts = 2;
+    constexpr int kMost = 18;
+    std::vector<double> widths;
+    std::size_t fits = 0;
+    for (const MatchedSpot& match : result_.matches) {
+        for (const auto& fit : match.fits) {
+            ++fits;
+            if (fit)
+                widths.push_back(fit->width_px);
+        }
+    }
+    if (fits < kFewest)
+        return false;
+    // Where most fit no spot at all, windows may hold nothing but their plateaus.
+    const bool isLost = 2 * widths.size() < fits;
+    const double usual = isLost ? 2 * options_.windowRadius / kWidths : median(std::move(widths));
+    const int radius = std::min(kMost, static_cast<int>(std::ceil(kWidths * usual)));
+    if (radius <= options_.windowRadius + 1)
+        return false;
+    done_ += kOneGo * (1 - done_);
+    options_.windowRadius = radius;
+    options_.maxShift_px = std::max(options_.maxShift_px, kShifts * usual);
+    options_.fit.prior.logWidth = std::log(usual);
+    motion_ = ScanMotion(radius, options_.fit);
+    result_.matches.clear();
+    result_.verdicts = Verdicts(modules_.size());
+    return true;
+}
+
 }  // namespace
 
 tl::expected<MeasuredSpots, ScanError> measureSpots(std::span<const ModuleId> modules,
@@ -166,11 +222,13 @@ tl::expected<MeasuredSpots, ScanError> measureSpots(std::span<const ModuleId> mo
     if (!words)
         return tl::unexpected(ScanError{words.error(), false});
     SpotPasses passes(modules, frames, load, *std::move(words), options, context);
-    for (const auto step :
-         {&SpotPasses::find, &SpotPasses::read, &SpotPasses::match, &SpotPasses::measure, &SpotPasses::fit}) {
-        if (auto done = (passes.*step)(); !done)
-            return tl::unexpected(std::move(done.error()));
-    }
+    Done done = passes.find();
+    if (done)
+        done = passes.identify();
+    while (done && passes.widen())
+        done = passes.identify();
+    if (!done)
+        return tl::unexpected(std::move(done.error()));
     return passes.take();
 }
 

@@ -15,10 +15,12 @@ struct MeasuredSpots {
     SpotScan scan;
     std::vector<MatchedSpot> matches{};  ///< with their fits
     std::optional<double> moved_px{};    ///< by which the camera moved in the scan, as far as the spots tell
+    DecoderOptions options{};            ///< that they were measured with at last
     Verdicts verdicts;
 };
 
-/// The three passes over the pictures of one look. Fails as decodeView.
+/// The three passes over the pictures of one look, of which two are done again, once or twice, in larger windows where
+/// the lens draws spots too wide for DecoderOptions::windowRadius. Fails as decodeView.
 [[nodiscard]] tl::expected<MeasuredSpots, ScanError> measureSpots(std::span<const ModuleId> modules,
                                                                   std::span<const FrameInfo> frames,
                                                                   const FrameLoader& load,

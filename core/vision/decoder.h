@@ -35,8 +35,8 @@ struct DecoderOptions {
 /// or without complements, repeats, colours (which ColourMixing tells apart, where there is a picture of all LEDs in
 /// each of red, green and blue). Three passes over the frames: where does anything blink (SpotFinder); what does it
 /// blink (a series per candidate, WordMatcher); what does its light look like (per pixel the least-squares amplitude of
-/// the module's word, neighbours' light taken off, fitSpot); the latter two again in larger windows where spots turn out
-/// to be wide, as of a lens out of focus. Memory grows with candidates times frames, never pictures times frames.
+/// the module's word, neighbours' light taken off, fitSpot); the latter two again in larger windows where spots turn
+/// out to be wide, as of a lens out of focus. Memory grows with candidates times frames, never pictures times frames.
 ///
 /// Where modules were looked for again (FurtherLooks), each look is decoded by itself and adds to those before it
 /// (addLook).
@@ -56,7 +56,8 @@ struct DecoderOptions {
 /// moved a little, half of that is part of every standard deviation: when it moved is not known.
 /// @param modules  all modules of the skin; a frame that lights any other is an error
 /// @param frames   in the order in which they were taken
-/// @param load     called for each frame three times, or up to seven where spots are wide, and a few times more where LEDs shine in colours
+/// @param load     called for each frame three times, or up to seven where spots are wide, and a few times more where
+///                 LEDs shine in colours
 /// Fails with a sentence on a loader error (passed on), frames of different sizes, lit sets that make no sense,
 /// pictures that show what was lit before them (picturesLate), and "cancelled". Throws std::logic_error on invalid
 /// options.

@@ -1,0 +1,120 @@
+// Spots that are wide, near each other, or both.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "core/vision/coded_scan.h"
+#include "tests/unit/vision/decoded.h"
+
+namespace skincal::testing {
+namespace {
+
+std::vector<FrameInfo> codedFrames(std::span<const ModuleId> modules, std::uint64_t seed) {
+    std::vector<FrameInfo> frames;
+    for (auto& lit : codedScan(modules, seed))
+        frames.push_back({{}, std::move(lit), {}, 0});
+    return frames;
+}
+
+class LensOutOfFocus : public ::testing::TestWithParam<double> {};
+
+TEST_P(LensOutOfFocus, CostsNeitherModulesNorHonesty) {
+    double normalised = 0;
+    std::size_t count = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        Random random(seed, "wide");
+        ScanPainter scan;
+        scan.seed = seed;
+        scan.size = {480, 360};
+        scan.width_px = GetParam();
+        scan.leds = scatterLeds(random, 20, scan.size, 24, 24);
+        // Bright ones are clipped over more than a window is wide at first.
+        for (PaintedLed& led : scan.leds)
+            led.peak = random.uniform(100, 1000);
+        scan.frames = codedFrames(scan.modules(), seed);
+        const ViewDetections view = decode(scan);
+        EXPECT_GE(expectNoneWrong(scan, view), scan.leds.size() - 1) << "seed " << seed;
+        std::unordered_map<ModuleId, Vector2d> truth;
+        for (const PaintedLed& led : scan.leds)
+            truth.emplace(led.module, led.pixel);
+        for (const LedDetection& found : view.found)
+            normalised += (found.pixel - truth.at(found.module)).squaredNorm() / 2 / std::pow(found.sigma_px, 2);
+        count += view.found.size();
+    }
+    EXPECT_LT(normalised / static_cast<double>(count), 1.5);
+    EXPECT_GT(normalised / static_cast<double>(count), 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, LensOutOfFocus, ::testing::Values(0.9, 1.8, 2.6, 3.4),
+                         [](const auto& width) { return std::to_string(std::lround(10 * width.param)); });
+
+TEST(CrowdedSpots, NoTwoModulesAreInOnePlace) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        Random random(seed, "same place");
+        ScanPainter scan;
+        scan.seed = seed;
+        scan.leds = scatterLeds(random, 12, scan.size);
+        scan.leds[0].peak = 90;
+        scan.leds[1] = {scan.leds[1].module, scan.leds[0].pixel + Vector2d(0.2, 0.1), 80};
+        scan.frames = codedFrames(scan.modules(), seed);
+        const ViewDetections view = decode(scan);
+        EXPECT_EQ(expectNoneWrong(scan, view), scan.leds.size() - 2);
+        for (const std::size_t u : {0U, 1U}) {
+            const Undetected* one = missing(view, scan.leds[u].module);
+            ASSERT_NE(one, nullptr) << "seed " << seed;
+            EXPECT_EQ(one->verdict, DetectionVerdict::Ambiguous);
+        }
+    }
+}
+
+// Of ten thousand words many two add up to two others.
+TEST(CrowdedSpots, WhoMergesIsNobodyElse) {
+    constexpr std::size_t kModules = 10'000;
+    constexpr double kApart_px = 3.6;
+    std::vector<ModuleId> modules;
+    for (std::size_t u = 0; u < kModules; ++u)
+        modules.emplace_back(static_cast<std::uint32_t>(1 + u));
+    std::size_t found = 0;
+    std::size_t all = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        Random random(seed, "pairs");
+        ScanPainter scan;
+        scan.seed = seed;
+        scan.size = {640, 480};
+        scan.width_px = 1.8;
+        scan.leds = scatterLeds(random, 200, scan.size, 18, 16);
+        const std::size_t pairs = scan.leds.size();
+        for (std::size_t i = 0; i < pairs; ++i) {
+            scan.leds[i].peak = random.uniform(28, 38);
+            const double angle = random.uniform(0, 6.28);
+            scan.leds.push_back({{},
+                                 scan.leds[i].pixel + kApart_px * Vector2d(std::cos(angle), std::sin(angle)),
+                                 random.uniform(28, 38)});
+        }
+        std::vector<std::size_t> who(kModules);
+        std::iota(who.begin(), who.end(), std::size_t{0});
+        std::unordered_map<ModuleId, Vector2d> truth;
+        for (std::size_t i = 0; i < scan.leds.size(); ++i) {
+            std::swap(who[i], who[i + random.index(kModules - i)]);
+            scan.leds[i].module = modules[who[i]];
+            truth.emplace(scan.leds[i].module, scan.leds[i].pixel);
+        }
+        scan.frames = codedFrames(modules, seed);
+        const auto view = decodeView("view", modules, scan.frames, scan.loader());
+        ASSERT_TRUE(view.has_value());
+        for (const LedDetection& one : view->found) {
+            const auto there = truth.find(one.module);
+            ASSERT_NE(there, truth.end()) << "module " << one.module.value << " is out of sight, seed " << seed;
+            EXPECT_LT((one.pixel - there->second).norm(), kApart_px / 2) << "module " << one.module.value << ", seed " << seed;
+        }
+        found += view->found.size();
+        all += scan.leds.size();
+    }
+    EXPECT_GE(found, all / 3) << "the rest waits for a further look";
+    std::cout << found << " of " << all << " found\n";
+}
+
+}  // namespace
+}  // namespace skincal::testing

@@ -24,6 +24,7 @@ const std::vector<Named>& disturbances() {
         {Disturbance::Person, "person", {1}},
         {Disturbance::Exposure, "exposure", {0.1, 0.3, 0.5, 0.7}},
         {Disturbance::Bump, "bump", {0.5, 2, 6, 20}},
+        {Disturbance::Focus, "focus", {1.4, 1.8, 2.4, 3.4}},
         {Disturbance::Crowding, "crowding", {8, 6, 4, 3, 2}},
     };
     return all;

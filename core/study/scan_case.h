@@ -20,6 +20,7 @@ enum class Disturbance {
     Person,      ///< somebody walks through: 1 yes
     Exposure,    ///< share by which the camera steps its exposure down and up again
     Bump,        ///< px by which the camera is knocked half-way
+    Focus,       ///< px of the lens's blur, the standard deviation of a point's light; 0.9 elsewhere
     Crowding,    ///< px between the two LEDs that are nearest to each other
 };
 [[nodiscard]] std::string_view name(Disturbance disturbance);

@@ -36,6 +36,8 @@ const char* unitOf(Disturbance disturbance) {
             return "grey levels";
         case Disturbance::Bump:
             return "px, half-way through the scan";
+        case Disturbance::Focus:
+            return "px of blur";
         case Disturbance::Crowding:
             return "px between LEDs";
         case Disturbance::None:

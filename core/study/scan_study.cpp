@@ -21,7 +21,7 @@ namespace {
 // A room that changes has no level that noise could be told from.
 bool isSteady(Disturbance disturbance) {
     return disturbance == Disturbance::None || disturbance == Disturbance::Ambient ||
-           disturbance == Disturbance::Crowding;
+           disturbance == Disturbance::Focus || disturbance == Disturbance::Crowding;
 }
 
 /// A scan of the study's view, looks added one after the other.

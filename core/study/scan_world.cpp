@@ -59,6 +59,9 @@ void disturb(Scenario& scenario, const ScanCase& what) {
         case Disturbance::Bump:
             disturbances.bump_px = what.strength;
             break;
+        case Disturbance::Focus:
+            scenario.pictures.blur_px = what.strength;
+            break;
     }
 }
 

@@ -45,7 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Expectation{Disturbance::Reflection, 0.3, 0.995}, Expectation{Disturbance::Screen, 250, 0.995},
                       Expectation{Disturbance::Mains50, 100, 0.995}, Expectation{Disturbance::Mains60, 100, 0.995},
                       Expectation{Disturbance::Sun, 2, 0.995}, Expectation{Disturbance::Person, 1, 0.995},
-                      Expectation{Disturbance::Exposure, 0.7, 0.995}, Expectation{Disturbance::Crowding, 3, 0.995}),
+                      Expectation{Disturbance::Exposure, 0.7, 0.995}, Expectation{Disturbance::Focus, 3.4, 0.995},
+                      Expectation{Disturbance::Crowding, 3, 0.995}),
     [](const auto& what) { return std::string(name(what.param.disturbance)); });
 
 TEST(ScanStudy, AKnockedCameraPutsNobodyElsewhere) {

@@ -41,7 +41,7 @@ Json toJson(const ScanStudyRow& row) {
             {"wrong", score.wrong},
             {"rms_px", score.rms_px()},
             {"rms_sigma", score.rmsSigmas()},
-            {"unclipped", score.sharp},
+            {"bounded", score.sharp},
             {"rms_bound", score.sharp > 0 ? Json(score.rmsBounds()) : Json()},
             {"seconds", score.seconds}};
 }

@@ -20,7 +20,7 @@ struct DecoderOptions {
     SpotFitOptions fit{};
     int windowRadius = 5;          ///< half the side of the window around a spot, at least; larger for wide spots
     double maxShift_px = 2.5;      ///< how far the fitted centre may lie from the candidate
-    double maxStrayShare = 0.02;   ///< of a clipped spot's light that may follow another word
+    double maxStrayShare = 0.02;   ///< of a clipped or shared spot's light that may follow another word
     double sameSpot_px = 2;        ///< two finds of one module nearer than this are one
     double reflectionRatio = 2.5;  ///< flux ratio from which the weaker of two spots is a reflection
     double maxMotion_px = 1;       ///< of the camera within the scan; beyond it nothing is found
@@ -44,14 +44,14 @@ struct DecoderOptions {
 /// Every module is either in `found` or in `undetected` with the reason:
 ///   NotFound   never or always lit; no spot blinks its word; its spot has not the shape of an LED; the camera moved by
 ///              more than `maxMotion_px` in the scan
-///   Ambiguous  another module has the same word; another word fits its spot as well; two spots of similar strength
-///              blink its word (a reflection less than `reflectionRatio` weaker): these are handed on as
-///              Undetected::spots, at most `maxSpots` of them; where there are more, none is. So is the only spot of a
-///              module where the picture, or that of an earlier look, shows others reflected (MirrorSide): a mirror
-///              also shows modules that are out of the camera's sight, and there `reflectionRatio` does not count.
-///              Where it shows those alone, three modules of which are not seen twice, a picture can't tell, and they
-///              are found: where they are not. settleSpots decides of the former by the body, and what rejects
-///              observations that no body explains does of the latter
+///   Ambiguous  another module has the same word; another word fits its spot as well; its spot has other light in it,
+///              or is that of another module, too; two spots of similar strength blink its word (a reflection less than
+///              `reflectionRatio` weaker): these are handed on as Undetected::spots, at most `maxSpots` of them; where
+///              there are more, none is. So is the only spot of a module where the picture, or that of an earlier look,
+///              shows others reflected (MirrorSide): a mirror also shows modules that are out of the camera's sight,
+///              and there `reflectionRatio` does not count. Where it shows those alone, three modules of which are not
+///              seen twice, a picture can't tell, and they are found: where they are not. settleSpots decides of the
+///              former by the body, and what rejects observations that no body explains does of the latter
 /// A spot shared by two LEDs is separated where both centres can be fitted, else neither is reported. Where the camera
 /// moved a little, half of that is part of every standard deviation: when it moved is not known.
 /// @param modules  all modules of the skin; a frame that lights any other is an error

@@ -1,5 +1,6 @@
 #include "core/vision/match_fits.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace skincal {
@@ -10,13 +11,16 @@ namespace {
 double strayIn(const SpotScan& scan, const DecoderOptions& options, const MatchedSpot& match, std::size_t j,
                const SpotWindow& window, const SpotFit& fit) {
     constexpr double kNear_px = 3.5;
+    constexpr double kNearWidths = 3;
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
     const bool isShared = sharesSpot(match.series, j);
     if (isShared && isBlindNear(window, fit.centre, options.maxShift_px))
         return kUnknown;
     if (!isShared && fit.clipped && hasMoreLight(scan, match))
         return kUnknown;
-    return isShared || fit.clipped ? match.maps[j].strayShare(fit.centre, kNear_px) : 0;
+    return isShared || fit.clipped
+               ? match.maps[j].strayShare(fit.centre, std::max(kNear_px, kNearWidths * fit.width_px))
+               : 0;
 }
 
 }  // namespace
@@ -28,6 +32,9 @@ void fitMatch(const SpotScan& scan, const DecoderOptions& options, MatchedSpot& 
         match.fits.push_back(fit);
         match.strays.push_back(fit ? strayIn(scan, options, match, j, window, *fit) : 0.0);
     }
+    // Of two words that make a spot alike both are right or none.
+    if (match.strays.size() == 2 && sharesSpot(match.series, 0) && sharesSpot(match.series, 1))
+        match.strays[0] = match.strays[1] = std::max(match.strays[0], match.strays[1]);
     std::vector<AmplitudeMap>().swap(match.maps);
 }
 

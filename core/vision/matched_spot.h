@@ -20,7 +20,7 @@ struct MatchedSpot {
     SeriesMatch series;
     std::vector<AmplitudeMap> maps{};  ///< until they are fitted
     std::vector<tl::expected<SpotFit, SpotFitError>> fits{};
-    /// Per fit, of a clipped spot's light what follows another word; infinite: no telling.
+    /// Per fit, of a clipped or shared spot's light what follows another word; infinite: no telling.
     std::vector<double> strays{};
 };
 

@@ -1,6 +1,7 @@
 #include "core/vision/sightings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -71,32 +72,66 @@ void dropStrangeWidths(const SpotScan& scan, const std::vector<MatchedSpot>& mat
     });
 }
 
+// How much more light all words have together than one: LEDs shine a little unevenly, each after its brightness.
+double lightOfAll(const SeriesMatch& series, std::size_t j) {
+    double squares = 0;
+    for (const double amplitude : series.amplitudes)
+        squares += std::pow(amplitude / series.amplitudes[j], 2);
+    return squares;
+}
+
+/// Spots that were refused although they may be the LED.
+using Refused = std::multimap<std::size_t, SpotFit>;
+
 // Where the words of two LEDs add up to those of two others, and one of them is known, the others are both taken for
 // the other one; but no two are in one place.
 void dropSamePlaces(const SpotScan& scan, const std::vector<MatchedSpot>& matches, std::vector<Sighting>& sightings,
-                    Verdicts& verdicts) {
+                    Refused& refused, Verdicts& verdicts) {
     constexpr double kSamePlace_px = 0.7;
+    constexpr double kMost_px = 1.5;
+    constexpr double kSigmas = 4;
     std::sort(sightings.begin(), sightings.end(), [](const Sighting& a, const Sighting& b) {
         return std::make_tuple(a.fit.centre.x(), a.fit.centre.y(), a.module) <
                std::make_tuple(b.fit.centre.x(), b.fit.centre.y(), b.module);
     });
+    const auto isOfTwo = [&](std::size_t i) { return matches[sightings[i].match].series.words.size() > 1; };
     std::vector<std::uint8_t> isTaken(sightings.size(), 0);
     for (std::size_t i = 0; i < sightings.size(); ++i) {
-        const Vector2d& here = sightings[i].fit.centre;
-        for (std::size_t j = i + 1; j < sightings.size() && sightings[j].fit.centre.x() - here.x() < kSamePlace_px;
-             ++j) {
-            if (sightings[j].module != sightings[i].module && (sightings[j].fit.centre - here).norm() < kSamePlace_px)
-                isTaken[i] = isTaken[j] = 1;
+        const SpotFit& here = sightings[i].fit;
+        for (std::size_t j = i + 1; j < sightings.size(); ++j) {
+            const SpotFit& there = sightings[j].fit;
+            if (there.centre.x() - here.centre.x() > kMost_px)
+                break;
+            const double same_px =
+                std::clamp(kSigmas * std::hypot(here.sigma_px, there.sigma_px), kSamePlace_px, kMost_px);
+            if (sightings[j].module == sightings[i].module || (there.centre - here.centre).norm() > same_px)
+                continue;
+            // A word that explains its spot alone adds up to nothing.
+            isTaken[i] |= isOfTwo(i) ? 1 : 0;
+            isTaken[j] |= isOfTwo(j) ? 1 : 0;
         }
     }
     std::size_t at = 0;
     std::erase_if(sightings, [&](const Sighting& sighting) {
         const bool isSame = isTaken[at++] != 0;
-        if (isSame)
+        if (isSame) {
+            refused.emplace(sighting.module, sighting.fit);
             verdicts.note(sighting.module, DetectionVerdict::Ambiguous, Undetected::Cause::Alike,
                           Sentence::saying("its spot is that of another module, too"),
                           nearestSpot(scan, matches[sighting.match], sighting.module));
+        }
         return isSame;
+    });
+}
+
+// Where the brightest spot of a module was refused, a fainter one elsewhere may be its reflection.
+void dropFainterElsewhere(const Refused& refused, double sameSpot_px, std::vector<Sighting>& sightings) {
+    std::erase_if(sightings, [&](const Sighting& sighting) {
+        const auto [first, last] = refused.equal_range(sighting.module);
+        return std::any_of(first, last, [&](const auto& one) {
+            const SpotFit& fit = one.second;
+            return fit.flux() >= sighting.fit.flux() && (fit.centre - sighting.fit.centre).norm() > sameSpot_px;
+        });
     });
 }
 
@@ -105,6 +140,7 @@ void dropSamePlaces(const SpotScan& scan, const std::vector<MatchedSpot>& matche
 std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<MatchedSpot>& matches,
                                   const DecoderOptions& options, Verdicts& verdicts) {
     std::vector<Sighting> sightings;
+    Refused refused;
     for (std::size_t i = 0; i < matches.size(); ++i) {
         const MatchedSpot& match = matches[i];
         for (std::size_t j = 0; j < match.fits.size(); ++j) {
@@ -124,7 +160,8 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
                               sentenceOf(SpotFitError::OutsideWindow), nearestSpot(scan, match, module));
                 continue;
             }
-            if (match.strays[j] > options.maxStrayShare) {
+            if (match.strays[j] > options.maxStrayShare * lightOfAll(match.series, j)) {
+                refused.emplace(module, *fit);
                 verdicts.note(module, DetectionVerdict::Ambiguous,
                               fit->clipped ? Undetected::Cause::TooBright : Undetected::Cause::Alike,
                               fit->clipped ? Sentence::saying("its spot is clipped and has other light in it")
@@ -136,7 +173,8 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
         }
     }
     dropStrangeWidths(scan, matches, sightings, verdicts);
-    dropSamePlaces(scan, matches, sightings, verdicts);
+    dropSamePlaces(scan, matches, sightings, refused, verdicts);
+    dropFainterElsewhere(refused, options.sameSpot_px, sightings);
     // Brightest first; ties by place, so that the result does not depend on anything else.
     std::sort(sightings.begin(), sightings.end(), [](const Sighting& a, const Sighting& b) {
         return std::make_tuple(a.module, -a.fit.flux(), a.fit.centre.x(), a.fit.centre.y()) <

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "core/geometry/statistics.h"
 #include "core/vision/frame_pass.h"
@@ -21,6 +22,11 @@ using Done = tl::expected<void, ScanError>;
 // Of the work, what finds spots, and of what is left a go at identifying them: whether there is another is not known.
 constexpr double kFinding = 0.4;
 constexpr double kOneGo = 0.7;
+
+// How large a window a spot takes, and from where on it is none.
+constexpr double kWidths = 4.3;
+constexpr double kLargest = 0.8;
+constexpr int kMostRadius = 18;
 
 class SpotPasses {
   public:
@@ -43,11 +49,8 @@ class SpotPasses {
     [[nodiscard]] Done identify();
     /// Makes windows as large as the spots are that were identified, for another go; false where they are so already.
     [[nodiscard]] bool widen();
-    [[nodiscard]] MeasuredSpots take() {
-        result_.moved_px = motion_.moved_px();
-        result_.options = options_;
-        return std::move(result_);
-    }
+    /// Of the go that could measure most modules.
+    [[nodiscard]] MeasuredSpots take();
 
   private:
     /// How does it blink?
@@ -61,6 +64,10 @@ class SpotPasses {
     [[nodiscard]] Done eachPlane(const Sentence& stage, double from, double to,
                                  const std::function<void(const FramePlane&)>& visit);
     void addToMaps(std::span<const FramePlane> planes);
+    [[nodiscard]] std::size_t modulesFitted() const;
+    /// Nothing where nothing tells.
+    [[nodiscard]] std::optional<double> usualWidth() const;
+    void keep();
 
     std::span<const ModuleId> modules_;
     std::span<const FrameInfo> frames_;
@@ -73,6 +80,8 @@ class SpotPasses {
     std::vector<SpotCandidate> candidates_;
     ScanMotion motion_;
     MeasuredSpots result_;
+    std::optional<MeasuredSpots> kept_{};  ///< of an earlier go
+    std::size_t keptModules_ = 0;          ///< that it fits
 };
 
 Done SpotPasses::find() {
@@ -181,36 +190,68 @@ Done SpotPasses::identify() {
     return {};
 }
 
-bool SpotPasses::widen() {
-    constexpr std::size_t kFewest = 3;
-    constexpr double kWidths = 4.3;
-    constexpr double kShifts = 2;
-    constexpr int kMost = 18;
-    std::vector<double> widths;
-    std::size_t fits = 0;
+std::size_t SpotPasses::modulesFitted() const {
+    std::set<std::size_t> fitted;
     for (const MatchedSpot& match : result_.matches) {
+        for (std::size_t j = 0; j < match.fits.size(); ++j) {
+            if (match.fits[j])
+                fitted.insert(match.series.words[j]);
+        }
+    }
+    return fitted.size();
+}
+
+std::optional<double> SpotPasses::usualWidth() const {
+    constexpr std::size_t kFewest = 3;
+    std::set<std::size_t> matched;
+    std::vector<double> widths;
+    for (const MatchedSpot& match : result_.matches) {
+        matched.insert(match.series.words.begin(), match.series.words.end());
         for (const auto& fit : match.fits) {
-            ++fits;
             if (fit)
                 widths.push_back(fit->width_px);
         }
     }
-    if (fits < kFewest)
-        return false;
     // Where most fit no spot at all, windows may hold nothing but their plateaus.
-    const bool isLost = 2 * widths.size() < fits;
-    const double usual = isLost ? 2 * options_.windowRadius / kWidths : median(std::move(widths));
-    const int radius = std::min(kMost, static_cast<int>(std::ceil(kWidths * usual)));
+    if (matched.size() >= kFewest && 2 * modulesFitted() < matched.size())
+        return std::min(kLargest * options_.fit.maxWidth_px, 2 * options_.windowRadius / kWidths);
+    return widths.empty() ? std::nullopt : std::optional(median(std::move(widths)));
+}
+
+bool SpotPasses::widen() {
+    constexpr double kShifts = 2;
+    constexpr double kMostPixels = 5e6;
+    const auto usual = usualWidth();
+    if (!usual)
+        return false;
+    const double affordable = std::sqrt(kMostPixels / static_cast<double>(result_.matches.size())) / 2;
+    const int radius = static_cast<int>(
+        std::min({std::ceil(kWidths * *usual), std::floor(affordable), static_cast<double>(kMostRadius)}));
     if (radius <= options_.windowRadius + 1)
         return false;
     done_ += kOneGo * (1 - done_);
+    keep();
     options_.windowRadius = radius;
-    options_.maxShift_px = std::max(options_.maxShift_px, kShifts * usual);
-    options_.fit.prior.logWidth = std::log(usual);
+    options_.maxShift_px = std::max(options_.maxShift_px, kShifts * *usual);
+    options_.fit.prior.logWidth = std::log(*usual);
     motion_ = ScanMotion(radius, options_.fit);
-    result_.matches.clear();
-    result_.verdicts = Verdicts(modules_.size());
+    result_.scan.codebook = kept_->scan.codebook;
+    result_.scan.noise = kept_->scan.noise;
     return true;
+}
+
+void SpotPasses::keep() {
+    keptModules_ = modulesFitted();
+    result_.moved_px = motion_.moved_px();
+    result_.options = options_;
+    kept_ = std::exchange(result_, {{}, {}, {}, options_, Verdicts(modules_.size())});
+}
+
+MeasuredSpots SpotPasses::take() {
+    const std::size_t fitted = modulesFitted();
+    if (!kept_ || fitted >= keptModules_)
+        keep();
+    return *std::move(kept_);
 }
 
 }  // namespace
@@ -225,7 +266,8 @@ tl::expected<MeasuredSpots, ScanError> measureSpots(std::span<const ModuleId> mo
     Done done = passes.find();
     if (done)
         done = passes.identify();
-    while (done && passes.widen())
+    constexpr int kMore = 2;
+    for (int more = 0; done && more < kMore && passes.widen(); ++more)
         done = passes.identify();
     if (!done)
         return tl::unexpected(std::move(done.error()));

@@ -20,7 +20,7 @@ struct MeasuredSpots {
 };
 
 /// The three passes over the pictures of one look, of which two are done again, once or twice, in larger windows where
-/// the lens draws spots too wide for DecoderOptions::windowRadius. Fails as decodeView.
+/// spots are too wide for DecoderOptions::windowRadius, or most modules fit none. Fails as decodeView.
 [[nodiscard]] tl::expected<MeasuredSpots, ScanError> measureSpots(std::span<const ModuleId> modules,
                                                                   std::span<const FrameInfo> frames,
                                                                   const FrameLoader& load,

@@ -5,18 +5,11 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "core/vision/coded_scan.h"
+#include "tests/unit/vision/coded_book.h"
 #include "tests/unit/vision/decoded.h"
 
 namespace skincal::testing {
 namespace {
-
-std::vector<FrameInfo> codedFrames(std::span<const ModuleId> modules, std::uint64_t seed) {
-    std::vector<FrameInfo> frames;
-    for (auto& lit : codedScan(modules, seed))
-        frames.push_back({{}, std::move(lit), {}, 0});
-    return frames;
-}
 
 class LensOutOfFocus : public ::testing::TestWithParam<double> {};
 

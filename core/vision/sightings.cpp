@@ -72,12 +72,15 @@ void dropStrangeWidths(const SpotScan& scan, const std::vector<MatchedSpot>& mat
     });
 }
 
-// How much more light all words have together than one: LEDs shine a little unevenly, each after its brightness.
-double lightOfAll(const SeriesMatch& series, std::size_t j) {
+// How much light may follow another word than one of a spot's. LEDs shine a little unevenly, each after its brightness:
+// beside a bright one, more of a faint one's. What follows its word only half is a third LED's, which the two add up to
+// nearly.
+double mostStrayShare(const SeriesMatch& series, std::size_t j, const DecoderOptions& options) {
+    constexpr double kHalf = 0.25;  // of the brightness, in energy
     double squares = 0;
     for (const double amplitude : series.amplitudes)
         squares += std::pow(amplitude / series.amplitudes[j], 2);
-    return squares;
+    return std::min(options.maxStrayShare * squares, std::max(options.maxStrayShare, kHalf));
 }
 
 /// Spots that were refused although they may be the LED.
@@ -160,7 +163,7 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
                               sentenceOf(SpotFitError::OutsideWindow), nearestSpot(scan, match, module));
                 continue;
             }
-            if (match.strays[j] > options.maxStrayShare * lightOfAll(match.series, j)) {
+            if (match.strays[j] > mostStrayShare(match.series, j, options)) {
                 refused.emplace(module, *fit);
                 verdicts.note(module, DetectionVerdict::Ambiguous,
                               fit->clipped ? Undetected::Cause::TooBright : Undetected::Cause::Alike,

@@ -121,5 +121,38 @@ TEST(CrowdedSpots, WhoMergesIsNobodyElse) {
     EXPECT_GE(found, all / 3) << "the rest waits for a further look";
 }
 
+// The skirts of two add up to the word of a third one, nearly: it is nobody's LED.
+TEST(CrowdedSpots, NobodyIsSeenInOthersLight) {
+    constexpr std::size_t kModules = 10'000;
+    std::vector<ModuleId> modules;
+    for (std::size_t u = 0; u < kModules; ++u)
+        modules.emplace_back(static_cast<std::uint32_t>(1 + u));
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        Random random(seed, "others' light");
+        ScanPainter scan;
+        scan.seed = seed;
+        scan.size = {400, 300};
+        scan.leds = scatterLeds(random, 1500, scan.size, 2.5, 8);
+        std::vector<std::size_t> who(kModules);
+        std::iota(who.begin(), who.end(), std::size_t{0});
+        std::unordered_map<ModuleId, Vector2d> truth;
+        for (std::size_t i = 0; i < scan.leds.size(); ++i) {
+            std::swap(who[i], who[i + random.index(kModules - i)]);
+            scan.leds[i].module = modules[who[i]];
+            scan.leds[i].peak = random.uniform(50, 80);
+            truth.emplace(scan.leds[i].module, scan.leds[i].pixel);
+        }
+        scan.frames = codedFrames(modules, seed);
+        const auto view = decodeView("view", modules, scan.frames, scan.loader());
+        ASSERT_TRUE(view.has_value());
+        for (const LedDetection& one : view->found) {
+            const auto there = truth.find(one.module);
+            ASSERT_NE(there, truth.end()) << "module " << one.module.value << " is out of sight, seed " << seed;
+            EXPECT_LT((one.pixel - there->second).norm(), 1) << "module " << one.module.value << ", seed " << seed;
+        }
+        EXPECT_GE(view->found.size(), scan.leds.size() * 4 / 5);
+    }
+}
+
 }  // namespace
 }  // namespace skincal::testing

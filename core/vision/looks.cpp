@@ -57,21 +57,39 @@ class Nearby {
     std::map<std::pair<int, int>, std::vector<std::size_t>> cells_;
 };
 
-/// From the first look to the further one; nothing where none was found by both.
+/// The median distance from the median.
+double scatterOf(std::vector<double> values) {
+    const double middle = median(values);
+    for (double& value : values)
+        value = std::abs(value - middle);
+    return median(std::move(values));
+}
+
+/// From the first look to the further one, zero where the modules found by both can't tell it from that; nothing where
+/// there are none.
 std::optional<Vector2d> motionSince(const ViewDetections& view, const ViewDetections& further) {
     std::vector<double> x;
     std::vector<double> y;
+    std::vector<double> sigmas;
     const PlaceOf found = placesIn(view.found);
     for (const LedDetection& now : further.found) {
         if (const auto at = found.find(now.module); at != found.end()) {
             const LedDetection& before = view.found[at->second];
             x.push_back(now.pixel.x() - before.pixel.x());
             y.push_back(now.pixel.y() - before.pixel.y());
+            sigmas.push_back(std::hypot(now.sigma_px, before.sigma_px));
         }
     }
     if (x.empty())
         return std::nullopt;
-    return Vector2d(median(std::move(x)), median(std::move(y)));
+    // Of normal values: the standard deviation over the median distance, and that of their median over their own / sqrt.
+    constexpr double kOverMedian = 1.483;
+    constexpr double kOfMedian = 1.253;
+    constexpr double kSigmas = 3;
+    const double sigma = std::max({median(std::move(sigmas)), kOverMedian * scatterOf(x), kOverMedian * scatterOf(y)});
+    const double least = kSigmas * kOfMedian * sigma / std::sqrt(static_cast<double>(x.size()));
+    const Vector2d motion(median(std::move(x)), median(std::move(y)));
+    return motion.norm() > least ? motion : Vector2d::Zero();
 }
 
 }  // namespace
@@ -151,8 +169,11 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
     view.unexplained = further.unexplained;
     for (Undetected now : further.undetected) {
         Undetected* missing = undetected(now.module);
-        if (missing == nullptr ||
-            (missing->cause != Undetected::Cause::OutOfSight && missing->cause != Undetected::Cause::CameraMoved))
+        if (missing == nullptr || !missing->spots.empty())
+            continue;
+        const bool hasReason =
+            missing->cause != Undetected::Cause::OutOfSight && missing->cause != Undetected::Cause::CameraMoved;
+        if (hasReason && now.spots.empty())
             continue;
         for (SpotChoice& spot : now.spots) {
             spot.pixel -= shift.value_or(Vector2d::Zero());

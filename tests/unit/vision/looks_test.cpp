@@ -148,6 +148,44 @@ TEST(Looks, SpotsThatAreHandedOnAreInThePixelsOfTheFirst) {
     EXPECT_NEAR(view.undetected[0].spots[1].sigma_px, std::hypot(0.03, 0.2), 1e-9);
 }
 
+TEST(Looks, SpotsToChooseFromAreMoreThanAReasonWhyThereAreNone) {
+    ViewDetections view;
+    view.found = {at(1, 100, 100)};
+    view.undetected = {missing(2, Cause::TooBright), missing(3, Cause::Reflected), missing(4, Cause::NotAnLed)};
+    view.undetected[1].spots = {{{20, 20}, 0.03, 1}};
+    ViewDetections further;
+    further.found = {at(1, 100, 100)};
+    for (const std::uint32_t module : {2U, 3U}) {
+        further.undetected.push_back(missing(module, Cause::Reflected));
+        further.undetected.back().spots = {{{50, 60}, 0.03, 1}, {{80, 60}, 0.03, 0.7}};
+    }
+    further.undetected.push_back(missing(4, Cause::TooWeak));
+    EXPECT_TRUE(addLook(view, further));
+    ASSERT_EQ(view.undetected.size(), 3U);
+    EXPECT_EQ(view.undetected[0].spots.size(), 2U);
+    EXPECT_EQ(view.undetected[1].spots.size(), 1U) << "what was handed on before stays";
+    EXPECT_EQ(view.undetected[2].cause, Cause::NotAnLed);
+}
+
+TEST(Looks, ACameraThatStandsStillIsNotMovedByErrors) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        Random random(seed, "anchors");
+        ViewDetections view;
+        ViewDetections further;
+        for (std::uint32_t module = 1; module <= 4; ++module) {
+            view.found.push_back(at(module, 100.0 * module, 50));
+            // They say 0.03 px, and are off by ten times as much.
+            further.found.push_back(at(module, 100.0 * module + 0.3 * random.normal(), 50 + 0.3 * random.normal()));
+        }
+        view.undetected = {missing(9)};
+        further.found.push_back(at(9, 300, 200));
+        ASSERT_TRUE(addLook(view, further));
+        ASSERT_EQ(view.found.size(), 5U);
+        EXPECT_EQ(view.found.back().pixel, Vector2d(300, 200)) << "seed " << seed;
+        EXPECT_EQ(view.found.back().sigma_px, 0.03) << "seed " << seed;
+    }
+}
+
 TEST(Looks, WhatAKnockSpoiltAltogetherIsFoundByTheNext) {
     ViewDetections view;
     view.moved_px = 6;

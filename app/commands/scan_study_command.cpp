@@ -38,6 +38,7 @@ Json toJson(const ScanStudyRow& row) {
             {"visible", score.visible},
             {"found", score.found},
             {"to_choose_from", score.choices},
+            {"taken_by_the_body", score.settled},
             {"wrong", score.wrong},
             {"rms_px", score.rms_px()},
             {"rms_sigma", score.rmsSigmas()},

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/estimation/patch_sightings.h"
+#include "core/estimation/shape_spots.h"
 #include "core/geometry/parallel.h"
 
 namespace skincal {
@@ -28,6 +29,15 @@ struct Work : InitialEstimate {
     std::vector<PatchSighting> sightings;
     std::vector<SightingCandidates> candidates;
 };
+
+void takeSpotsByShape(Work& run) {
+    const auto chosen =
+        chooseSpotsByShape(*run.measurements, run.layout, run.shapes.shapes, run.input.pixels, run.options.pose);
+    for (const ChosenSpot& one : chosen) {
+        run.spots.push_back({one.view, one.module, run.input.pixels.size(), one.spot.pixel, one.reason});
+        run.input.pixels.push_back({one.view, one.module, one.spot.pixel, one.spot.sigma_px});
+    }
+}
 
 void findCandidates(Work& run) {
     using Poses = tl::expected<std::vector<PatchPose>, CalibrationError>;
@@ -260,6 +270,7 @@ tl::expected<InitialEstimate, CalibrationError> estimateInitially(const Measurem
     if (!shapes)
         return tl::unexpected(shapes.error());
     run.shapes = std::move(*shapes);
+    takeSpotsByShape(run);
     run.sightings = collectSightings(skin, run.layout, run.shapes.shapes, run.input.pixels);
     run.evidence = patchEvidence(run.layout, run.shapes.shapes, run.input.pixels);
     findCandidates(run);

@@ -6,6 +6,7 @@
 
 #include "core/adjustment/body_adjustment.h"
 #include "core/adjustment/measurements.h"
+#include "core/estimation/body_assembly.h"
 #include "core/estimation/body_attachment.h"
 #include "core/estimation/candidate_selection.h"
 #include "core/estimation/gravity_alignment.h"
@@ -50,6 +51,7 @@ struct InitialEstimate {
     GravityFrame gravityFrame;
     GrowingBody body;
     std::vector<ViewAlternative> alternatives;  ///< other places of views that nothing decided yet
+    std::vector<SpotVerdict> spots;             ///< taken by the shape of patches (chooseSpotsByShape)
 
     /// Modules of placed patches and views in one frame.
     [[nodiscard]] BodyState state() const;

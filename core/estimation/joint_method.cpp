@@ -173,6 +173,7 @@ tl::expected<void, CalibrationError> chooseSpots(BodySolution& solution, const R
     // Without covariances nothing tells how well an LED's place is known.
     if (!solution.anyViewPlaced() || solution.estimate.covariances.empty())
         return {};
+    dropRejectedSpots(solution);
     bool isChanged = false;
     for (int round = 0; round < options.maxRounds; ++round) {
         StageClock clock("which of several spots");

@@ -3,6 +3,7 @@
 
 #include "core/estimation/joint_method.h"
 #include "core/estimation/noise_findings.h"
+#include "core/estimation/shape_spots.h"
 #include "core/estimation/stage_clock.h"
 
 namespace skincal {
@@ -85,6 +86,10 @@ bool attachWhatIsNew(BodySolution& next, const InitialEstimateOptions& options) 
     std::vector<bool> before(next.body.T_r_o.size());
     for (std::size_t k = 0; k < before.size(); ++k)
         before[k] = next.body.T_r_o[k].has_value();
+    const auto chosen =
+        chooseSpotsByShape(*next.measurements, next.layout, next.shapes.shapes, next.input.pixels, options.pose);
+    for (const ChosenSpot& one : chosen)
+        takeSpot(next, {one.view, one.module}, one.spot, one.reason);
     const auto sightings = collectSightings(*next.input.skin, next.layout, next.shapes.shapes, next.input.pixels);
     attachRest(next, sightings, options);
     next.solved.T_r_v = next.body.T_r_v;
@@ -141,7 +146,6 @@ tl::expected<BodySolution, CalibrationError> updateJointly(const BodySolution& l
         next.input.viewNoise.resize(measurements.views.size(), 1);
     movePoses(next, *last.input.gravity, gravity);
     replaceDetections(next, measurements);
-    next.evidence = patchEvidence(next.layout, next.shapes.shapes, next.input.pixels);
     RefinementOptions once = options.refinement;
     once.maxReweightings = 1;
     int iterations = 0;
@@ -152,13 +156,13 @@ tl::expected<BodySolution, CalibrationError> updateJointly(const BodySolution& l
         iterations = *took;
         once.maxReweightings = 3;
     }
+    next.evidence = patchEvidence(next.layout, next.shapes.shapes, next.input.pixels);
     next.estimate.stages.push_back(clock.stop(iterations));
     const auto review = refineJointly(next, once, context);
     if (!review)
         return tl::unexpected(review.error());
     if (*review)
         next.estimate.covariances = (*review)->covariances;
-    dropRejectedSpots(next);
     if (const auto chosen = chooseSpots(next, once, options.spots, context); !chosen)
         return tl::unexpected(chosen.error());
     noteNoiseFindings(next);

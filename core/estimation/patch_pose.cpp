@@ -2,146 +2,17 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 #include <stdexcept>
 
+#include "core/estimation/pose_scene.h"
 #include "core/geometry/random.h"
 
 namespace skincal {
 namespace {
-
-cv::Point3d toCv(const Vector3d& p) {
-    return {p.x(), p.y(), p.z()};
-}
-
-Isometry3d toPose(const cv::Mat& rvec, const cv::Mat& tvec) {
-    const Vector3d w(rvec.at<double>(0), rvec.at<double>(1), rvec.at<double>(2));
-    return makeIsometry(so3Exp(w), Vector3d(tvec.at<double>(0), tvec.at<double>(1), tvec.at<double>(2)));
-}
-
-/// The correspondences in normalised image coordinates: lens distortion is dealt with once, by our own model.
-struct Scene {
-    std::vector<LedCorrespondence> leds;
-    std::vector<Vector2d> normalised;
-    double focal = 1;
-
-    [[nodiscard]] std::size_t size() const { return leds.size(); }
-
-    /// Residual in px (of an undistorted picture with the same focal length); infinite behind the camera.
-    [[nodiscard]] double residual(const Isometry3d& T_v_o, std::size_t i) const {
-        const Vector3d p = T_v_o * leds[i].led_o;
-        if (p.z() < 1e-3)
-            return std::numeric_limits<double>::infinity();
-        return focal * (p.head<2>() / p.z() - normalised[i]).norm();
-    }
-};
-
-Scene makeScene(std::span<const LedCorrespondence> leds, const CameraModel& camera) {
-    Scene scene;
-    scene.leds.assign(leds.begin(), leds.end());
-    scene.focal = 0.5 * (camera.fx + camera.fy);
-    for (const LedCorrespondence& led : leds)
-        scene.normalised.push_back(camera.unproject(led.pixel));
-    return scene;
-}
-
-double inlierLimit(const Scene& scene, const Isometry3d& T_v_o, std::size_t i, const PatchPoseOptions& options) {
-    const double depth = std::max(1e-3, (T_v_o * scene.leds[i].led_o).z());
-    const double shape_px = options.shapeSigma * scene.focal / depth;
-    return std::min(options.maxResidual_px,
-                    options.maxResidualSigmas * std::hypot(shape_px, scene.leds[i].sigma_px) + 0.5);
-}
-
-void score(const Scene& scene, const PatchPoseOptions& options, PatchPose& pose) {
-    pose.inliers.assign(scene.size(), false);
-    double cost = 0;
-    double sum = 0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-        const double limit = inlierLimit(scene, pose.T_v_o, i, options);
-        const double r = scene.residual(pose.T_v_o, i);
-        cost += std::min(r * r, limit * limit);
-        if (r < limit) {
-            pose.inliers[i] = true;
-            sum += r * r;
-            ++count;
-        }
-    }
-    pose.cost = cost / static_cast<double>(scene.size());
-    pose.rms_px = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0;
-}
-
-/// Seen from behind, a patch would hide its own LEDs.
-bool facesCamera(const Scene& scene, const PatchPose& pose) {
-    double facing = 0;
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-        if (pose.inliers[i])
-            facing -=
-                (pose.T_v_o.linear() * scene.leds[i].normal_o).dot((pose.T_v_o * scene.leds[i].led_o).normalized());
-    }
-    return facing > 0;
-}
-
-/// Normal equations of the inliers' pixels about a pose, left perturbation: p_v + w x p_v + dt (about the camera).
-void linearise(const Scene& scene, const PatchPose& pose, double shapeSigma, Matrix6d& H, Vector6d& g) {
-    H.setZero();
-    g.setZero();
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-        if (!pose.inliers[i])
-            continue;
-        const Vector3d p = pose.T_v_o * scene.leds[i].led_o;
-        if (p.z() < 1e-3)
-            continue;
-        Eigen::Matrix<double, 2, 3> P;
-        P << 1 / p.z(), 0, -p.x() / (p.z() * p.z()), 0, 1 / p.z(), -p.y() / (p.z() * p.z());
-        Eigen::Matrix<double, 2, 6> J;
-        J.leftCols<3>() = -P * skew(p);
-        J.rightCols<3>() = P;
-        const Vector2d r = p.head<2>() / p.z() - scene.normalised[i];
-        const double sigma = std::hypot(scene.leds[i].sigma_px / scene.focal, shapeSigma / p.z());
-        H += J.transpose() * J / (sigma * sigma);
-        g += J.transpose() * r / (sigma * sigma);
-    }
-}
-
-/// Levenberg-Marquardt on the inliers, which are chosen anew after every few steps.
-void refine(const Scene& scene, const PatchPoseOptions& options, PatchPose& pose) {
-    score(scene, options, pose);
-    double lambda = 1e-4;
-    for (int step = 0; step < 30; ++step) {
-        Matrix6d H;
-        Vector6d g;
-        linearise(scene, pose, options.shapeSigma, H, g);
-        Matrix6d damped = H;
-        damped.diagonal() += lambda * H.diagonal() + Vector6d::Constant(1e-12);
-        const Vector6d d = -damped.ldlt().solve(g);
-        constexpr double kNothing = 1e-9;  // rad and m: another step would find no less
-        if (!d.allFinite() || d.norm() < kNothing)
-            break;
-        PatchPose next;
-        const Matrix3d dR = so3Exp(d.head<3>());
-        next.T_v_o = makeIsometry(dR * pose.T_v_o.linear(), dR * pose.T_v_o.translation() + d.tail<3>());
-        score(scene, options, next);
-        if (next.cost <= pose.cost) {
-            const bool done = pose.cost - next.cost < 1e-10 * (1 + pose.cost);
-            pose = next;
-            lambda = std::max(1e-9, lambda * 0.2);
-            if (done)
-                break;
-        } else {
-            lambda *= 10;
-            if (lambda > 1e6)
-                break;
-        }
-    }
-    Matrix6d H;
-    Vector6d g;
-    linearise(scene, pose, options.shapeSigma, H, g);
-    pose.covariance = (H + 1e-6 * Matrix6d::Identity()).inverse();
-}
 
 /// Principal axes of the LEDs: rms extents in rising order, and the directions.
 struct PrincipalAxes {
@@ -150,7 +21,7 @@ struct PrincipalAxes {
     Matrix3d axes = Matrix3d::Identity();
 };
 
-PrincipalAxes principalAxes(const Scene& scene) {
+PrincipalAxes principalAxes(const PoseScene& scene) {
     const auto n = static_cast<double>(scene.size());
     PrincipalAxes result;
     for (const LedCorrespondence& led : scene.leds)
@@ -198,7 +69,7 @@ std::vector<std::array<std::size_t, 3>> triples(std::size_t n, int limit) {
 }
 
 /// The poses that three LEDs allow.
-std::vector<Isometry3d> minimalPoses(const Scene& scene, const std::array<std::size_t, 3>& triple) {
+std::vector<Isometry3d> minimalPoses(const PoseScene& scene, const std::array<std::size_t, 3>& triple) {
     const auto& [i, j, k] = triple;
     const Vector3d a = scene.leds[j].led_o - scene.leds[i].led_o;
     const Vector3d b = scene.leds[k].led_o - scene.leds[i].led_o;
@@ -253,64 +124,16 @@ bool PatchPoseOptions::validate() const {
            maxCandidates > 0;
 }
 
-tl::expected<PatchPose, CalibrationError> estimatePatchPosePaper(std::span<const LedCorrespondence> leds,
-                                                                 const CameraModel& camera,
-                                                                 const PaperPoseOptions& options) {
-    if (!options.validate())
-        throw std::logic_error("PaperPoseOptions out of range");
-    if (leds.size() < static_cast<std::size_t>(options.minLeds))
-        return tl::unexpected(CalibrationError{
-            ErrorCode::TooFewPoints,
-            {{"found", static_cast<double>(leds.size())}, {"needed", static_cast<double>(options.minLeds)}}});
-    const Scene scene = makeScene(leds, camera);
-    std::vector<cv::Point3d> object;
-    std::vector<cv::Point2d> image;
-    for (std::size_t i = 0; i < leds.size(); ++i) {
-        object.push_back(toCv(leds[i].led_o));
-        image.emplace_back(scene.normalised[i].x() * scene.focal, scene.normalised[i].y() * scene.focal);
-    }
-    const cv::Matx33d K(scene.focal, 0, 0, 0, scene.focal, 0, 0, 0, 1);
-    cv::Mat rvec;
-    cv::Mat tvec;
-    std::vector<int> inliers;
-    bool ok = false;
-    try {
-        ok = cv::solvePnPRansac(object, image, K, cv::noArray(), rvec, tvec, false, options.iterations,
-                                static_cast<float>(options.reprojectionError_px), options.confidence, inliers,
-                                cv::SOLVEPNP_EPNP);
-    } catch (const cv::Exception&) {
-        ok = false;  // OpenCV throws where its sample was degenerate
-    }
-    if (!ok || static_cast<int>(inliers.size()) < options.minInliers)
-        return tl::unexpected(CalibrationError{
-            ErrorCode::NoConsensus,
-            {{"inliers", static_cast<double>(inliers.size())}, {"needed", static_cast<double>(options.minInliers)}}});
-    PatchPose pose;
-    pose.T_v_o = toPose(rvec, tvec);
-    if (!isRigid(pose.T_v_o))
-        return tl::unexpected(CalibrationError{ErrorCode::NoConsensus, {}});
-    pose.inliers.assign(leds.size(), false);
-    double sum = 0;
-    for (const int i : inliers) {
-        pose.inliers[static_cast<std::size_t>(i)] = true;
-        const double r = scene.residual(pose.T_v_o, static_cast<std::size_t>(i));
-        sum += r * r;
-    }
-    pose.rms_px = std::sqrt(sum / static_cast<double>(inliers.size()));
-    pose.cost = pose.rms_px * pose.rms_px;
-    return pose;
-}
-
 tl::expected<std::vector<PatchPose>, CalibrationError> estimatePatchPoses(std::span<const LedCorrespondence> leds,
                                                                           const CameraModel& camera,
                                                                           const PatchPoseOptions& options) {
     if (!options.validate())
         throw std::logic_error("PatchPoseOptions out of range");
-    if (leds.size() < static_cast<std::size_t>(options.minInliers))
+    const PoseScene scene(leds, camera);
+    if (scene.ledCount() < static_cast<std::size_t>(options.minInliers))
         return tl::unexpected(CalibrationError{
             ErrorCode::TooFewPoints,
-            {{"found", static_cast<double>(leds.size())}, {"needed", static_cast<double>(options.minInliers)}}});
-    const Scene scene = makeScene(leds, camera);
+            {{"found", static_cast<double>(scene.ledCount())}, {"needed", static_cast<double>(options.minInliers)}}});
     const PrincipalAxes shape = principalAxes(scene);
     if (shape.extent[1] < options.minWidthSigmas * options.shapeSigma)
         return tl::unexpected(CalibrationError{ErrorCode::DegeneratePoints, {}});
@@ -321,7 +144,9 @@ tl::expected<std::vector<PatchPose>, CalibrationError> estimatePatchPoses(std::s
             PatchPose pose;
             pose.T_v_o = T;
             score(scene, options, pose);
-            poses.push_back(std::move(pose));
+            // A patch's mirror image is explained from behind, and may be the better seen of the two.
+            if (facesCamera(scene, pose))
+                poses.push_back(std::move(pose));
         }
     }
     // Minimal poses are rough: several are worth refining before the best are chosen.
@@ -335,7 +160,7 @@ tl::expected<std::vector<PatchPose>, CalibrationError> estimatePatchPoses(std::s
         poses.push_back(std::move(other));
     }
     const double needed = std::max(static_cast<double>(options.minInliers),
-                                   std::ceil(options.minInlierShare * static_cast<double>(scene.size())));
+                                   std::ceil(options.minInlierShare * static_cast<double>(scene.ledCount())));
     std::erase_if(poses, [&](const PatchPose& pose) {
         return static_cast<double>(pose.inlierCount()) < needed || !facesCamera(scene, pose) || !isRigid(pose.T_v_o) ||
                !pose.covariance.allFinite();

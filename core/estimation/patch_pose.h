@@ -16,6 +16,7 @@ struct LedCorrespondence {
     Vector3d normal_o = Vector3d::UnitZ();  ///< out of the skin there: an LED is seen from its front only
     Vector2d pixel = Vector2d::Zero();
     double sigma_px = 0.1;
+    bool isAlternative = false;  ///< another pixel of the LED before it: at most one of them shows it
 };
 
 struct PaperPoseOptions {
@@ -70,7 +71,8 @@ struct PatchPoseOptions {
 /// Every pose that explains the image of a patch about equally well, best first: one for a bent patch, two for a flat
 /// one (its normal mirrored about the line of sight). Which of them is true is for the rest of the data to decide.
 /// Works on planes: minimal solutions from three LEDs (P3P), consensus with outliers, refined on the inliers, and the
-/// mirrored pose tried for each. Deterministic.
+/// mirrored pose tried for each. Of an LED's alternative pixels the nearest counts; shares and costs are those of LEDs.
+/// Deterministic.
 /// Fails with TooFewPoints, DegeneratePoints (LEDs on a line) or NoConsensus.
 /// Ref: Fischler and Bolles 1981 (RANSAC); Ke and Roumeliotis, CVPR 2017 (AP3P); Collins and Bartoli, IJCV 2014 (the
 /// two poses of a plane).

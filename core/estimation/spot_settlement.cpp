@@ -7,8 +7,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/adjustment/pixel_prediction.h"
-
 namespace skincal {
 namespace {
 
@@ -111,18 +109,16 @@ Sentence whyTaken(const Undetected& undetected, const Fit& fit) {
                                   undetected.reason, fit.sigmas, fit.next);
 }
 
-void take(BodySolution& solution, const Case& open, const Fit& fit) {
-    const SpotChoice& spot = open.undetected->spots[fit.spot];
+}  // namespace
+
+void takeSpot(BodySolution& solution, const LedInView& led, const SpotChoice& spot, const Sentence& reason) {
     BodyEstimate& estimate = solution.estimate;
-    estimate.spots.push_back(
-        {open.led.view, open.led.module, solution.input.pixels.size(), spot.pixel, whyTaken(*open.undetected, fit)});
-    solution.input.pixels.push_back({open.led.view, open.led.module, spot.pixel, spot.sigma_px});
+    estimate.spots.push_back({led.view, led.module, solution.input.pixels.size(), spot.pixel, reason});
+    solution.input.pixels.push_back({led.view, led.module, spot.pixel, spot.sigma_px});
     estimate.rejected.push_back(false);
     estimate.rejectedReason.emplace_back();
     estimate.setAside.emplace_back();
 }
-
-}  // namespace
 
 tl::expected<std::size_t, CalibrationError> settleSpots(BodySolution& solution, const SpotOptions& options,
                                                         const RunContext& context) {
@@ -165,7 +161,7 @@ tl::expected<std::size_t, CalibrationError> settleSpots(BodySolution& solution, 
             leaveOpen(cases[i], why);
             continue;
         }
-        take(solution, cases[i], fit);
+        takeSpot(solution, cases[i].led, cases[i].undetected->spots[fit.spot], whyTaken(*cases[i].undetected, fit));
         ++taken;
     }
     return taken;

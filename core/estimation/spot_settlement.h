@@ -2,6 +2,7 @@
 
 #include <tl/expected.hpp>
 
+#include "core/adjustment/pixel_prediction.h"
 #include "core/estimation/body_solution.h"
 
 namespace skincal {
@@ -36,6 +37,9 @@ struct SpotOptions {
 [[nodiscard]] tl::expected<std::size_t, CalibrationError> settleSpots(BodySolution& solution,
                                                                       const SpotOptions& options = {},
                                                                       const RunContext& context = {});
+
+/// From here on the spot counts as a detection like any other.
+void takeSpot(BodySolution& solution, const LedInView& led, const SpotChoice& spot, const Sentence& reason);
 
 /// Spots that were taken and have been rejected or set aside since count as open again.
 void dropRejectedSpots(BodySolution& solution);

@@ -78,6 +78,7 @@ tl::expected<BodySolution, CalibrationError> solveRound(const Measurements& meas
     BodySolution solution{std::move(*initial), {}, {}, options.adjustment, {}};
     BodyEstimate& estimate = solution.estimate;
     estimate.method = "sturdy";
+    estimate.spots = std::move(solution.spots);
     estimate.rejected.assign(solution.input.pixels.size(), false);
     estimate.rejectedReason.resize(solution.input.pixels.size());
     estimate.setAside.resize(solution.input.pixels.size());

@@ -35,7 +35,7 @@ double distanceTo(const std::vector<Vector2d>& places, const Vector2d& pixel) {
 }  // namespace
 
 double ScanScore::foundShare() const {
-    return visible > 0 ? static_cast<double>(found) / static_cast<double>(visible) : 1;
+    return visible > 0 ? static_cast<double>(found + settled) / static_cast<double>(visible) : 1;
 }
 
 double ScanScore::rms_px() const {
@@ -57,6 +57,7 @@ void ScanScore::add(const ScanScore& other) {
     visible += other.visible;
     found += other.found;
     choices += other.choices;
+    settled += other.settled;
     wrong += other.wrong;
     squaredError += other.squaredError;
     squaredSigmas += other.squaredSigmas;
@@ -66,7 +67,8 @@ void ScanScore::add(const ScanScore& other) {
     seconds += other.seconds;
 }
 
-ScanScore scoreOf(const World& world, const ViewDetections& view, std::span<const std::optional<double>> bounds) {
+ScanScore scoreOf(const World& world, const ViewDetections& view, std::span<const LedDetection> taken,
+                  std::span<const std::optional<double>> bounds) {
     const auto index = world.skin.indexById();
     ScanScore result;
     result.views = 1;
@@ -84,12 +86,23 @@ ScanScore scoreOf(const World& world, const ViewDetections& view, std::span<cons
         }
         return false;
     };
+    const auto isWrong = [&](std::size_t u, const Vector2d& pixel) {
+        // Where they are a few pixels apart, that is little; errors are hundredths elsewhere.
+        constexpr double kNear_px = 0.5;
+        const double error = distanceTo(placesOfAll[u], pixel);
+        return error > ScanScore::kElsewhere_px || (error > kNear_px && isNearerToAnother(u, pixel, error));
+    };
+    for (const LedDetection& one : taken) {
+        const std::size_t u = index.at(one.module);
+        if (isWrong(u, one.pixel))
+            ++result.wrong;
+        else if (visible[u])
+            ++result.settled;
+    }
     for (const LedDetection& found : view.found) {
         const std::size_t u = index.at(found.module);
         const double error = distanceTo(placesOfAll[u], found.pixel);
-        // Where they are a few pixels apart, that is little; errors are hundredths elsewhere.
-        constexpr double kNear_px = 0.5;
-        if (error > ScanScore::kElsewhere_px || (error > kNear_px && isNearerToAnother(u, found.pixel, error))) {
+        if (isWrong(u, found.pixel)) {
             ++result.wrong;
         } else if (visible[u]) {
             ++result.found;

@@ -11,6 +11,7 @@
 #include "core/geometry/parallel.h"
 #include "core/simulation/renderer.h"
 #include "core/study/centre_bound.h"
+#include "core/study/scan_body.h"
 #include "core/vision/decoder.h"
 #include "core/vision/further_looks.h"
 #include "core/vision/paper_detector.h"
@@ -22,6 +23,10 @@ namespace {
 bool isSteady(Disturbance disturbance) {
     return disturbance == Disturbance::None || disturbance == Disturbance::Ambient ||
            disturbance == Disturbance::Focus || disturbance == Disturbance::Crowding;
+}
+
+bool hasMirror(Disturbance disturbance) {
+    return disturbance == Disturbance::Reflection || disturbance == Disturbance::Hidden;
 }
 
 /// A scan of the study's view, looks added one after the other.
@@ -63,7 +68,10 @@ class StudiedScan {
         }
         if (!view)
             return {};
-        ScanScore result = scoreOf(world_, *view, bounds(*view));
+        std::vector<LedDetection> taken;
+        if (hasMirror(what_.disturbance))
+            taken = spotsTakenByBody(world_, *view, context);
+        ScanScore result = scoreOf(world_, *view, taken, bounds(*view));
         result.refused = isRefused_ ? 1 : 0;
         result.frames = frames_.size();
         result.seconds = seconds_;

@@ -12,9 +12,9 @@ std::string percent(std::size_t part, std::size_t whole) {
 }
 
 std::string line(const std::string& what, const ScanScore& score) {
-    return fmt::format("| {} | {} | {} | {} | {} | {:.3f} | {:.2f} | {} |\n", what, score.visible,
-                       percent(score.found, score.visible), percent(score.choices, score.visible), score.wrong,
-                       score.rms_px(), score.rmsSigmas(),
+    return fmt::format("| {} | {} | {} | {} | {} | {} | {:.3f} | {:.2f} | {} |\n", what, score.visible,
+                       percent(score.found, score.visible), percent(score.choices, score.visible),
+                       percent(score.settled, score.visible), score.wrong, score.rms_px(), score.rmsSigmas(),
                        score.sharp > 0 ? fmt::format("{:.2f}", score.rmsBounds()) : "–");
 }
 
@@ -22,10 +22,10 @@ std::string line(const std::string& what, const ScanScore& score) {
 
 std::string scanTable(const ScanStudy& study) {
     std::string text =
-        "| disturbance | strength | modules | distance, m | scan | pictures | visible | found | to choose from | wrong "
-        "| "
-        "rms, px | rms, sigma | rms, bounds |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+        "| disturbance | strength | modules | distance, m | scan | pictures | visible | found | to choose from | taken "
+        "by the body "
+        "| wrong | rms, px | rms, sigma | rms, bounds |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
     ScanScore coded;
     for (const ScanStudyRow& row : study.rows) {
         const ScanCase& what = row.what;
@@ -37,9 +37,11 @@ std::string scanTable(const ScanStudy& study) {
             coded.add(row.score);
     }
     if (coded.views > 0)
-        text +=
-            fmt::format("\n{} coded scans, {} of them refused: {} modules visible, {} found, {} wrong.\n", coded.views,
-                        coded.refused, coded.visible, percent(coded.found, coded.visible), coded.wrong);
+        text += fmt::format(
+            "\n{} coded scans, {} of them refused: {} modules visible, {} found, {} more by the body, {} "
+            "wrong.\n",
+            coded.views, coded.refused, coded.visible, percent(coded.found, coded.visible),
+            percent(coded.settled, coded.visible), coded.wrong);
     return text;
 }
 

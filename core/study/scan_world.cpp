@@ -128,7 +128,6 @@ World laidOut(const ScanCase& what, std::uint64_t seed, double widest) {
     Scenario scenario;
     scenario.name = "scan-study";
     scenario.camera = simulatedWebcam();
-    scenario.sensors.poses = 0;
     layPatches(scenario, what, widest);
     // Who scans from near by turns the exposure down, until few LEDs are clipped.
     constexpr double kBright = 0.6;

@@ -82,7 +82,7 @@ std::optional<Vector2d> motionSince(const ViewDetections& view, const ViewDetect
     }
     if (x.empty())
         return std::nullopt;
-    // Of normal values: the standard deviation over the median distance, and that of their median over their own / sqrt.
+    // Of normal errors: standard deviation over median distance, and that of their median over theirs, times sqrt(n).
     constexpr double kOverMedian = 1.483;
     constexpr double kOfMedian = 1.253;
     constexpr double kSigmas = 3;

@@ -237,6 +237,36 @@ INSTANTIATE_TEST_SUITE_P(Bodies, AboveATable,
                                     (std::get<1>(what.param) < 0.35 ? "Dull" : "Bright");
                          });
 
+class BrightTable : public testing::TestWithParam<std::tuple<const char*, double>> {};
+
+// A table that returns half of the light or more leaves hardly an LED that is sure: here the shape of the patches tells
+// which way round the body is.
+TEST_P(BrightTable, ThereIsABodyBesideItsMirrorImage) {
+    const World world = aboveATable(std::get<0>(GetParam()), std::get<1>(GetParam()), 1);
+    const Recording recording = recordingOf(world);
+    const auto measurements = measure(recording, framesOf(world, recording));
+    ASSERT_TRUE(measurements);
+    EXPECT_EQ(countAstray(world, *measurements), 0U);
+    const auto body = calibrateJoint(*measurements);
+    ASSERT_TRUE(body) << body.error().message();
+    expectNobodyAstray(world, *body);
+    EXPECT_TRUE(errorOf(world, *body));
+    std::size_t visible = 0;
+    for (std::size_t v = 0; v < measurements->views.size(); ++v) {
+        EXPECT_EQ(body->views[v].status, "placed");
+        for (std::size_t u = 0; u < world.T_r_u.size(); ++u)
+            visible += visiblePixel(world, v, u, visibilityOfLight()) ? 1 : 0;
+    }
+    EXPECT_GE(used(*body) * 10, visible * 9) << used(*body) << " of " << visible;
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, BrightTable,
+                         testing::Combine(testing::Values("mirror", "plane", "freeform"), testing::Values(0.5, 0.9)),
+                         [](const auto& what) {
+                             return std::string(std::get<0>(what.param)) +
+                                    std::to_string(std::lround(100 * std::get<1>(what.param)));
+                         });
+
 TEST(SimulatedWorlds, TheOperatorsRejectionLeavesNoSpotToChoose) {
     Scenario scenario = *findScenario("mirror");
     scenario.views.count = 1;

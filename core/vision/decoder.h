@@ -19,7 +19,7 @@ struct DecoderOptions {
     WordMatchOptions words{};
     SpotFitOptions fit{};
     int windowRadius = 5;          ///< half the side of the window around a spot, at least; larger for wide spots
-    double maxShift_px = 2.5;      ///< how far the fitted centre may lie from the candidate
+    double maxShift_px = 2.5;      ///< how far the fitted centre may lie from a candidate of one LED, its middle seen
     double maxStrayShare = 0.02;   ///< of a clipped or shared spot's light that may follow another word
     double sameSpot_px = 2;        ///< two finds of one module nearer than this are one
     double reflectionRatio = 2.5;  ///< flux ratio from which the weaker of two spots is a reflection

@@ -155,9 +155,9 @@ std::vector<Sighting> sightingsOf(const SpotScan& scan, const std::vector<Matche
                 continue;
             }
             // The skirt of a neighbour blinks the neighbour's word; its centre lies elsewhere. Where two LEDs share one
-            // maximum, each may sit a little off it.
-            const bool shared = sharesSpot(match.series, j);
-            const double allowed = shared ? options.windowRadius - 1.0 : options.maxShift_px;
+            // maximum, each may sit a little off it, and where the middle is blind the maximum is on the rim.
+            const bool isOff = sharesSpot(match.series, j) || fit->blind;
+            const double allowed = isOff ? options.windowRadius - 1.0 : options.maxShift_px;
             if ((fit->centre - Vector2d(match.spot.x, match.spot.y)).norm() > allowed) {
                 verdicts.note(module, DetectionVerdict::NotFound, Undetected::Cause::NotAnLed,
                               sentenceOf(SpotFitError::OutsideWindow), nearestSpot(scan, match, module));

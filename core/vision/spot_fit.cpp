@@ -145,9 +145,9 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
     const double chi2 = normals.misfit / std::max(1.0, normals.informative - 6.0);
     // Of a clipped spot, and one whose middle is blind, the amplitude is an extrapolation. That there is light in the
     // one needs no proof; in the other the rim has to show it.
+    constexpr double kMiddle_px = 1.5;
+    const bool isBlind = isBlindNear(window, centre, kMiddle_px);
     const auto squaredSignificance = [&] {
-        constexpr double kMiddle_px = 1.5;
-        const bool isBlind = isBlindNear(window, centre, kMiddle_px);
         return (isBlind ? model.explained(*parameters).gain : 1 / covariance(2, 2)) / std::max(1.0, chi2);
     };
     if (clipped == 0 && !(squaredSignificance() >= std::pow(options.minSignificance, 2)))
@@ -167,6 +167,7 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
     fit.amplitude = std::exp((*parameters)[2]);
     fit.chi2 = chi2;
     fit.clipped = clipped > 0;
+    fit.blind = isBlind;
     return fit;
 }
 

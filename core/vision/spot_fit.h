@@ -63,6 +63,7 @@ struct SpotFit {
     double amplitude = 0;      ///< of the core, grey levels; beyond 255 where the spot is clipped
     double chi2 = 0;           ///< per degree of freedom
     bool clipped = false;
+    bool blind = false;  ///< nothing is known of its middle, only of its rim
 
     /// Light of the core, grey levels times pixels.
     [[nodiscard]] double flux() const;

@@ -1,4 +1,4 @@
-// Spots that are wide, near each other, or both.
+// Spots that are wide, near each other, or both; or blind in the middle.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,6 +50,25 @@ TEST_P(LensOutOfFocus, CostsNeitherModulesNorHonesty) {
 
 INSTANTIATE_TEST_SUITE_P(Widths, LensOutOfFocus, ::testing::Values(0.9, 1.8, 2.6, 3.4),
                          [](const auto& width) { return std::to_string(std::lround(10 * width.param)); });
+
+// White domes in a bright room are white whether their LEDs are lit or not; but for their rims.
+TEST(BlindSpots, AreFoundByTheirRims) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        Random random(seed, "rims");
+        ScanPainter scan;
+        scan.seed = seed;
+        scan.leds = scatterLeds(random, 12, scan.size, 24, 16);
+        for (PaintedLed& led : scan.leds)
+            led.peak = random.uniform(400, 700);
+        scan.frames = codedFrames(scan.modules(), seed);
+        scan.disturb = [&](cv::Mat& light, std::size_t) {
+            for (const PaintedLed& led : scan.leds)
+                addSpot(light, led.pixel, 3000, 1.3);
+        };
+        const ViewDetections view = decode(scan);
+        EXPECT_GE(expectNoneWrong(scan, view), scan.leds.size() - 1) << "seed " << seed;
+    }
+}
 
 TEST(CrowdedSpots, NoTwoModulesAreInOnePlace) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {

@@ -65,9 +65,14 @@ double scatterOf(std::vector<double> values) {
     return median(std::move(values));
 }
 
-/// From the first look to the further one, zero where the modules found by both can't tell it from that; nothing where
-/// there are none.
-std::optional<Vector2d> motionSince(const ViewDetections& view, const ViewDetections& further) {
+/// Of the camera, from the first look to the further one.
+struct LookMotion {
+    Vector2d shift = Vector2d::Zero();  ///< zero where the modules found by both can't tell it from that
+    double length_px = 0;               ///< as they have it
+};
+
+/// Nothing where no module was found by both.
+std::optional<LookMotion> motionSince(const ViewDetections& view, const ViewDetections& further) {
     std::vector<double> x;
     std::vector<double> y;
     std::vector<double> sigmas;
@@ -89,7 +94,7 @@ std::optional<Vector2d> motionSince(const ViewDetections& view, const ViewDetect
     const double sigma = std::max({median(std::move(sigmas)), kOverMedian * scatterOf(x), kOverMedian * scatterOf(y)});
     const double least = kSigmas * kOfMedian * sigma / std::sqrt(static_cast<double>(x.size()));
     const Vector2d motion(median(std::move(x)), median(std::move(y)));
-    return motion.norm() > least ? motion : Vector2d::Zero();
+    return LookMotion{motion.norm() > least ? motion : Vector2d::Zero(), motion.norm()};
 }
 
 }  // namespace
@@ -124,17 +129,18 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
     // Pixels of two cameras are none of one view.
     if (isFirst && hasChoices(view))
         return false;
-    const std::optional<Vector2d> shift = motionSince(view, further);
-    const double moved = shift ? shift->norm() : 0;
+    const std::optional<LookMotion> motion = motionSince(view, further);
+    const Vector2d shift = motion ? motion->shift : Vector2d::Zero();
+    const double moved = motion ? motion->length_px : 0;
     const double movedAtAll = std::max(moved, further.moved_px.value_or(0));
     if (isFirst) {
         // Of pictures that gave nothing nothing is left that could have moved.
         view.moved_px = further.moved_px;
         view.look = further.look;
-    } else if (shift || further.moved_px) {
+    } else if (motion || further.moved_px) {
         view.moved_px = std::max(view.moved_px.value_or(0), movedAtAll);
     }
-    if (movedAtAll > options.maxMotion_px || (!isFirst && !shift))
+    if (movedAtAll > options.maxMotion_px || (!isFirst && !motion))
         return false;
     view.mirrored = further.mirrored;
     const std::vector<LedDetection> before = view.found;
@@ -149,7 +155,7 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
         Undetected* missing = undetected(found.module);
         if (missing == nullptr)
             continue;
-        found.pixel -= shift.value_or(Vector2d::Zero());
+        found.pixel -= shift;
         found.sigma_px = std::hypot(found.sigma_px, 0.5 * moved);
         if (const LedDetection* there = spots.first(found.pixel)) {
             missing->verdict = DetectionVerdict::Ambiguous;
@@ -176,11 +182,11 @@ bool addLook(ViewDetections& view, const ViewDetections& further, const LookOpti
         if (hasReason && now.spots.empty())
             continue;
         for (SpotChoice& spot : now.spots) {
-            spot.pixel -= shift.value_or(Vector2d::Zero());
+            spot.pixel -= shift;
             spot.sigma_px = std::hypot(spot.sigma_px, 0.5 * moved);
         }
         if (now.nearest)
-            now.nearest->pixel -= shift.value_or(Vector2d::Zero());
+            now.nearest->pixel -= shift;
         *missing = std::move(now);
     }
     std::erase_if(view.undetected, [&](const Undetected& one) { return !places.contains(one.module); });

@@ -25,7 +25,7 @@ struct LookOptions {
 [[nodiscard]] bool hasChoices(const ViewDetections& view);
 
 /// Adds what a further look found, in the pixels of the first: modules that both found tell how the camera moved in
-/// between (their median, where it is more than they may be off), which is taken off and, by half, part of the new
+/// between (their median), which is taken off where it is more than they may be off, and by half part of the new
 /// standard deviations. What was found before stays. A module that shines where another was found is ambiguous. Modules
 /// that it does not find either keep their reason, unless the further look has spots to choose from, or a reason where
 /// the earlier had none. Where nothing was found before, the further look

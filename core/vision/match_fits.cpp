@@ -14,7 +14,7 @@ double strayIn(const SpotScan& scan, const DecoderOptions& options, const Matche
     constexpr double kNearWidths = 3;
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
     const bool isShared = sharesSpot(match.series, j);
-    if (isShared && isBlindNear(window, fit.centre, options.maxShift_px))
+    if (isShared && blindShare(window, fit.centre, options.maxShift_px) > 0)
         return kUnknown;
     if (!isShared && fit.clipped && hasMoreLight(scan, match))
         return kUnknown;

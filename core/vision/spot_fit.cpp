@@ -77,15 +77,19 @@ SpotModel::Normals minimised(const SpotModel& model, const SpotPrior& prior, boo
 
 }  // namespace
 
-bool isBlindNear(const SpotWindow& window, const Vector2d& centre, double radius_px) {
+double blindShare(const SpotWindow& window, const Vector2d& centre, double radius_px) {
+    std::size_t pixels = 0;
+    std::size_t blind = 0;
     for (Eigen::Index row = 0; row < window.state.rows(); ++row) {
         for (Eigen::Index col = 0; col < window.state.cols(); ++col) {
             const Vector2d pixel(static_cast<double>(window.x0 + col), static_cast<double>(window.y0 + row));
-            if (window.state(row, col) == PixelState::Excluded && (pixel - centre).norm() <= radius_px)
-                return true;
+            if ((pixel - centre).norm() > radius_px)
+                continue;
+            ++pixels;
+            blind += window.state(row, col) == PixelState::Excluded ? 1 : 0;
         }
     }
-    return false;
+    return pixels > 0 ? static_cast<double>(blind) / static_cast<double>(pixels) : 0;
 }
 
 Sentence sentenceOf(SpotFitError error) {
@@ -146,9 +150,9 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
     // Of a clipped spot, and one whose middle is blind, the amplitude is an extrapolation. That there is light in the
     // one needs no proof; in the other the rim has to show it.
     constexpr double kMiddle_px = 1.5;
-    const bool isBlind = isBlindNear(window, centre, kMiddle_px);
+    const double blind = blindShare(window, centre, kMiddle_px);
     const auto squaredSignificance = [&] {
-        return (isBlind ? model.explained(*parameters).gain : 1 / covariance(2, 2)) / std::max(1.0, chi2);
+        return (blind > 0 ? model.explained(*parameters).gain : 1 / covariance(2, 2)) / std::max(1.0, chi2);
     };
     if (clipped == 0 && !(squaredSignificance() >= std::pow(options.minSignificance, 2)))
         return tl::unexpected(SpotFitError::NoLight);
@@ -167,7 +171,7 @@ tl::expected<SpotFit, SpotFitError> fitSpot(const SpotWindow& window, const Spot
     fit.amplitude = std::exp((*parameters)[2]);
     fit.chi2 = chi2;
     fit.clipped = clipped > 0;
-    fit.blind = isBlind;
+    fit.blind = blind > 0.5;
     return fit;
 }
 

@@ -63,14 +63,14 @@ struct SpotFit {
     double amplitude = 0;      ///< of the core, grey levels; beyond 255 where the spot is clipped
     double chi2 = 0;           ///< per degree of freedom
     bool clipped = false;
-    bool blind = false;  ///< nothing is known of its middle, only of its rim
+    bool blind = false;  ///< of most of its middle nothing is known, only of its rim
 
     /// Light of the core, grey levels times pixels.
     [[nodiscard]] double flux() const;
 };
 
-/// Whether pixels so near to a centre are excluded.
-[[nodiscard]] bool isBlindNear(const SpotWindow& window, const Vector2d& centre, double radius_px);
+/// How many of the pixels so near to a centre are excluded, 0 to 1.
+[[nodiscard]] double blindShare(const SpotWindow& window, const Vector2d& centre, double radius_px);
 
 /// Sub-pixel centre of an LED's light: maximum likelihood for a round Gaussian with a faint halo on a constant offset
 /// (SpotModel), every pixel weighted with its own noise, clipped pixels as lower bounds. Six unknowns.

@@ -8,17 +8,9 @@
 #include "core/estimation/body_model.h"
 #include "core/estimation/patch_shape.h"
 #include "core/estimation/skin_layout.h"
+#include "core/estimation/spot_verdict.h"
 
 namespace skincal {
-
-/// What became of a module for which several spots of a view blink (Undetected::spots).
-struct SpotVerdict {
-    std::size_t view = 0;
-    std::size_t module = 0;
-    std::optional<std::size_t> pixel{};  ///< entry of AdjustmentInput::pixels; nothing where none was taken
-    std::optional<Vector2d> spot{};      ///< which of them that is
-    Sentence reason;                     ///< of either
-};
 
 /// What a method hands over once its estimation is done; assembleBody makes the body model of it.
 struct BodyEstimate {

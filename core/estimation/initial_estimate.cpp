@@ -31,10 +31,10 @@ struct Work : InitialEstimate {
 };
 
 void takeSpotsByShape(Work& run) {
-    const auto chosen =
-        chooseSpotsByShape(*run.measurements, run.layout, run.shapes.shapes, run.input.pixels, run.options.pose);
+    const auto chosen = chooseSpotsByShape(*run.measurements, run.layout, run.shapes.shapes, run.input.pixels,
+                                           run.options.pose, run.context);
     for (const ChosenSpot& one : chosen) {
-        run.spots.push_back({one.view, one.module, run.input.pixels.size(), one.spot.pixel, one.reason});
+        run.spotsByShape.push_back({one.view, one.module, run.input.pixels.size(), one.spot.pixel, one.reason});
         run.input.pixels.push_back({one.view, one.module, one.spot.pixel, one.spot.sigma_px});
     }
 }

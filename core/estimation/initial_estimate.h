@@ -6,7 +6,6 @@
 
 #include "core/adjustment/body_adjustment.h"
 #include "core/adjustment/measurements.h"
-#include "core/estimation/body_assembly.h"
 #include "core/estimation/body_attachment.h"
 #include "core/estimation/candidate_selection.h"
 #include "core/estimation/gravity_alignment.h"
@@ -16,6 +15,7 @@
 #include "core/estimation/patch_sightings.h"
 #include "core/estimation/pose_graph.h"
 #include "core/estimation/skin_layout.h"
+#include "core/estimation/spot_verdict.h"
 #include "core/estimation/view_alternatives.h"
 #include "core/geometry/run_context.h"
 
@@ -51,7 +51,7 @@ struct InitialEstimate {
     GravityFrame gravityFrame;
     GrowingBody body;
     std::vector<ViewAlternative> alternatives;  ///< other places of views that nothing decided yet
-    std::vector<SpotVerdict> spots;             ///< taken by the shape of patches (chooseSpotsByShape)
+    std::vector<SpotVerdict> spotsByShape;      ///< taken, all of `input`'s pixels (chooseSpotsByShape)
 
     /// Modules of placed patches and views in one frame.
     [[nodiscard]] BodyState state() const;
@@ -64,6 +64,7 @@ void attachRest(InitialEstimate& estimate, const std::vector<PatchSighting>& sig
 
 /// The paper's pipeline without its weaknesses:
 ///   1. patch shapes by least squares over gravity and link points, accelerometers calibrated on the way
+///      where a view has hardly a sure LED of a patch, spots are taken that its shape explains (chooseSpotsByShape)
 ///   2. every pose that explains a patch in a view (two for a flat one), decided by gravity and by the other views
 ///   3. body from a spanning tree over all views by quality, loops closed by rotation and translation averaging
 ///   4. views and patches that the tree could not reach are attached through the whole body: views by all placed LEDs

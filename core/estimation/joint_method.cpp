@@ -51,6 +51,8 @@ tl::expected<void, CalibrationError> refineAndTakeOut(BodySolution& solution, So
         if (!*review)
             return {};
         solution.estimate.covariances = (*review)->covariances;
+        // What was taken by the shape of a patch and does not stand is no evidence against anything.
+        dropRejectedSpots(solution);
         if (round == options.maxTakeOuts)
             return {};
         if (!takeOutSuspects(solution, usedMeasurements(solution), **review, history, options.suspects))
@@ -170,10 +172,10 @@ tl::expected<BodySolution, CalibrationError> solveJointly(const Measurements& me
 
 tl::expected<void, CalibrationError> chooseSpots(BodySolution& solution, const RefinementOptions& refinement,
                                                  const SpotOptions& options, const RunContext& context) {
+    dropRejectedSpots(solution);
     // Without covariances nothing tells how well an LED's place is known.
     if (!solution.anyViewPlaced() || solution.estimate.covariances.empty())
         return {};
-    dropRejectedSpots(solution);
     bool isChanged = false;
     for (int round = 0; round < options.maxRounds; ++round) {
         StageClock clock("which of several spots");

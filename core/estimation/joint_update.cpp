@@ -70,9 +70,21 @@ void replaceDetections(BodySolution& next, const Measurements& measurements) {
     }
 }
 
+/// Of views with hardly a sure LED.
+void takeSpotsByShape(BodySolution& next, const PatchPoseOptions& options, const RunContext& context) {
+    std::vector<PixelObservation> sure;
+    for (std::size_t i = 0; i < next.input.pixels.size(); ++i) {
+        if (next.estimate.setAside[i].empty())
+            sure.push_back(next.input.pixels[i]);
+    }
+    for (const ChosenSpot& one :
+         chooseSpotsByShape(*next.measurements, next.layout, next.shapes.shapes, sure, options, context))
+        takeSpot(next, {one.view, one.module}, one.spot, one.reason);
+}
+
 /// Views and patches that the new pictures bring within reach.
 /// @return true where a patch is new: it lies where gravity and a few rays have it.
-bool attachWhatIsNew(BodySolution& next, const InitialEstimateOptions& options) {
+bool attachWhatIsNew(BodySolution& next, const InitialEstimateOptions& options, const RunContext& context) {
     next.body.T_r_v = next.solved.T_r_v;
     for (std::size_t k = 0; k < next.layout.patches.size(); ++k) {
         const Patch& patch = next.layout.patches[k];
@@ -86,10 +98,7 @@ bool attachWhatIsNew(BodySolution& next, const InitialEstimateOptions& options) 
     std::vector<bool> before(next.body.T_r_o.size());
     for (std::size_t k = 0; k < before.size(); ++k)
         before[k] = next.body.T_r_o[k].has_value();
-    const auto chosen =
-        chooseSpotsByShape(*next.measurements, next.layout, next.shapes.shapes, next.input.pixels, options.pose);
-    for (const ChosenSpot& one : chosen)
-        takeSpot(next, {one.view, one.module}, one.spot, one.reason);
+    takeSpotsByShape(next, options.pose, context);
     const auto sightings = collectSightings(*next.input.skin, next.layout, next.shapes.shapes, next.input.pixels);
     attachRest(next, sightings, options);
     next.solved.T_r_v = next.body.T_r_v;
@@ -149,7 +158,7 @@ tl::expected<BodySolution, CalibrationError> updateJointly(const BodySolution& l
     RefinementOptions once = options.refinement;
     once.maxReweightings = 1;
     int iterations = 0;
-    if (attachWhatIsNew(next, options.start.initial)) {
+    if (attachWhatIsNew(next, options.start.initial, context)) {
         const auto took = adjustCoarsely(next, options.start.adjustment, context);
         if (!took)
             return tl::unexpected(took.error());

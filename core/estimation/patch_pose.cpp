@@ -98,13 +98,33 @@ std::vector<Isometry3d> minimalPoses(const PoseScene& scene, const std::array<st
     return poses;
 }
 
-/// Keeps the best of those that are nearer to each other than `distinct`.
-void keepDistinct(std::vector<PatchPose>& poses, double distinct, std::size_t limit) {
+/// Whether two poses take different pixels for more than a quarter of the LEDs that both explain.
+bool differInPixels(const PoseScene& scene, const PatchPose& a, const PatchPose& b) {
+    std::size_t both = 0;
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < scene.size();) {
+        bool inA = false;
+        bool inB = false;
+        bool same = false;
+        const std::size_t first = i;
+        for (; i < scene.size() && (i == first || scene.leds[i].isAlternative); ++i) {
+            inA = inA || a.inliers[i];
+            inB = inB || b.inliers[i];
+            same = same || (a.inliers[i] && b.inliers[i]);
+        }
+        both += inA && inB ? 1 : 0;
+        different += inA && inB && !same ? 1 : 0;
+    }
+    return 4 * different > both;
+}
+
+/// Keeps the best of those that are nearer to each other than `distinct`, and take the same pixels.
+void keepDistinct(const PoseScene& scene, std::vector<PatchPose>& poses, double distinct, std::size_t limit) {
     std::stable_sort(poses.begin(), poses.end(), [](const auto& x, const auto& y) { return x.cost < y.cost; });
     std::vector<PatchPose> kept;
     for (const PatchPose& pose : poses) {
         const bool known = std::any_of(kept.begin(), kept.end(), [&](const PatchPose& other) {
-            return poseDifference(pose.T_v_o, other.T_v_o).angle < distinct;
+            return poseDifference(pose.T_v_o, other.T_v_o).angle < distinct && !differInPixels(scene, pose, other);
         });
         if (!known && kept.size() < limit)
             kept.push_back(pose);
@@ -138,6 +158,7 @@ tl::expected<std::vector<PatchPose>, CalibrationError> estimatePatchPoses(std::s
     if (shape.extent[1] < options.minWidthSigmas * options.shapeSigma)
         return tl::unexpected(CalibrationError{ErrorCode::DegeneratePoints, {}});
 
+    const bool hasAlternatives = scene.ledCount() < scene.size();
     std::vector<PatchPose> poses;
     for (const auto& triple : triples(scene.size(), options.maxSamples)) {
         for (const Isometry3d& T : minimalPoses(scene, triple)) {
@@ -145,12 +166,12 @@ tl::expected<std::vector<PatchPose>, CalibrationError> estimatePatchPoses(std::s
             pose.T_v_o = T;
             score(scene, options, pose);
             // A patch's mirror image is explained from behind, and may be the better seen of the two.
-            if (facesCamera(scene, pose))
+            if (!hasAlternatives || facesCamera(scene, pose))
                 poses.push_back(std::move(pose));
         }
     }
     // Minimal poses are rough: several are worth refining before the best are chosen.
-    keepDistinct(poses, 0.5 * options.distinctAngle_rad, 12);
+    keepDistinct(scene, poses, 0.5 * options.distinctAngle_rad, 12);
     for (PatchPose& pose : poses)
         refine(scene, options, pose);
     const std::size_t refined = poses.size();
@@ -165,7 +186,7 @@ tl::expected<std::vector<PatchPose>, CalibrationError> estimatePatchPoses(std::s
         return static_cast<double>(pose.inlierCount()) < needed || !facesCamera(scene, pose) || !isRigid(pose.T_v_o) ||
                !pose.covariance.allFinite();
     });
-    keepDistinct(poses, options.distinctAngle_rad, static_cast<std::size_t>(options.maxCandidates));
+    keepDistinct(scene, poses, options.distinctAngle_rad, static_cast<std::size_t>(options.maxCandidates));
     if (poses.empty())
         return tl::unexpected(CalibrationError{ErrorCode::NoConsensus, {{"needed", needed}}});
     const double worst = options.maxCostRatio * poses.front().cost + 1.0;

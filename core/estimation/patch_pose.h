@@ -16,7 +16,7 @@ struct LedCorrespondence {
     Vector3d normal_o = Vector3d::UnitZ();  ///< out of the skin there: an LED is seen from its front only
     Vector2d pixel = Vector2d::Zero();
     double sigma_px = 0.1;
-    bool isAlternative = false;  ///< another pixel of the LED before it: at most one of them shows it
+    bool isAlternative = false;  ///< another pixel of the LED right before it: at most one of them shows it
 };
 
 struct PaperPoseOptions {
@@ -36,7 +36,7 @@ struct PatchPose {
     Isometry3d T_v_o = Isometry3d::Identity();
     std::vector<bool> inliers;  ///< per correspondence
     double rms_px = 0;          ///< over the inliers
-    /// Mean of min(|residual|, limit)^2 over all correspondences, px^2; the paper's has only the inliers' in it.
+    /// Mean of min(|residual|, limit)^2 over all LEDs, px^2; the paper's has only the inliers' in it.
     double cost = 0;
     /// Rotation vector (left, camera frame) then translation, rad and m; the paper's method gives none.
     Matrix6d covariance = Matrix6d::Identity();

@@ -1,14 +1,20 @@
 #include "core/estimation/shape_spots.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <span>
 
+#include "core/geometry/parallel.h"
 #include "core/vision/looks.h"
 
 namespace skincal {
 namespace {
+
+constexpr std::size_t kFewest = 6;  // three make a pose, and of many spots a fourth lies near it by chance
 
 /// Everything that may be the LED of a module where hardly one of its patch is sure.
 struct Spots {
@@ -53,11 +59,18 @@ std::optional<std::size_t> takenBy(const PatchPose& pose, std::size_t first, std
     return std::nullopt;
 }
 
-/// Those that all poses agree on; nothing where they agree on less than half.
+/// Those that all poses agree on; none where they are less than half, or some pose explains the picture from other
+/// pixels altogether.
 std::vector<std::size_t> agreedOn(std::span<const LedCorrespondence> leds, const std::vector<PatchPose>& poses,
                                   double apart_px) {
+    for (const PatchPose& other : poses) {
+        std::size_t common = 0;
+        for (std::size_t i = 0; i < leds.size(); ++i)
+            common += poses.front().inliers[i] && other.inliers[i] ? 1 : 0;
+        if (2 * common < other.inlierCount())
+            return {};
+    }
     std::vector<std::size_t> agreed;
-    std::size_t disputed = 0;
     for (std::size_t first = 0; first < leds.size();) {
         std::size_t last = first + 1;
         while (last < leds.size() && leds[last].isAlternative)
@@ -70,12 +83,36 @@ std::vector<std::size_t> agreedOn(std::span<const LedCorrespondence> leds, const
         bool isNearAnother = false;
         for (std::size_t i = first; taken && i < last; ++i)
             isNearAnother = isNearAnother || (i != *taken && (leds[i].pixel - leds[*taken].pixel).norm() < apart_px);
-        disputed += isDisputed ? 1 : 0;
         if (taken && !isDisputed && !isNearAnother)
             agreed.push_back(*taken);
         first = last;
     }
-    return disputed > agreed.size() ? std::vector<std::size_t>{} : agreed;
+    return 2 * agreed.size() < poses.front().inlierCount() ? std::vector<std::size_t>{} : agreed;
+}
+
+/// Whether a motion would bring the LEDs that a pose explains to where a mirror shows them, facing the camera: those of
+/// a single row, as of a ring round an arm, lie in a plane that their axes lie in, too.
+bool isMirrorSymmetric(std::span<const LedCorrespondence> leds, const PatchPose& pose, double shapeSigma) {
+    constexpr double kFlatSigmas = 6;
+    constexpr double kAcross = 0.7;
+    Vector3d centre = Vector3d::Zero();
+    Vector3d normal = Vector3d::Zero();
+    const auto count = static_cast<double>(pose.inlierCount());
+    for (std::size_t i = 0; i < leds.size(); ++i) {
+        if (!pose.inliers[i])
+            continue;
+        centre += leds[i].led_o / count;
+        normal += leds[i].normal_o;
+    }
+    Matrix3d spread = Matrix3d::Zero();
+    for (std::size_t i = 0; i < leds.size(); ++i) {
+        if (pose.inliers[i])
+            spread += (leds[i].led_o - centre) * (leds[i].led_o - centre).transpose() / count;
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(spread);
+    const double thickness = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));
+    return thickness < kFlatSigmas * shapeSigma &&
+           std::abs(axes.eigenvectors().col(0).dot(normal.normalized())) < kAcross;
 }
 
 Sentence whyTaken(const Undetected& undetected) {
@@ -88,37 +125,60 @@ Sentence whyTaken(const Undetected& undetected) {
 
 std::vector<ChosenSpot> chooseSpotsByShape(const Measurements& measurements, const SkinLayout& layout,
                                            const std::vector<PatchShape>& shapes,
-                                           const std::vector<PixelObservation>& pixels,
-                                           const PatchPoseOptions& options) {
-    if (std::none_of(measurements.views.begin(), measurements.views.end(), hasChoices))
+                                           const std::vector<PixelObservation>& pixels, const PatchPoseOptions& options,
+                                           const RunContext& context) {
+    const auto& views = measurements.views;
+    if (std::none_of(views.begin(), views.end(), hasChoices))
         return {};
+    const auto sure = collectSightings(measurements.skin, layout, shapes, pixels);
+    // Not a vector of bool: each is written beside the others.
+    std::vector<std::uint8_t> isPosed(sure.size(), 0);
+    forEachInParallel(
+        sure.size(), 1,
+        [&](std::size_t s) {
+            const bool isAsked = hasChoices(views[sure[s].view]);
+            isPosed[s] = !isAsked || estimatePatchPoses(sure[s].leds, measurements.camera, options) ? 1 : 0;
+        },
+        [&](std::size_t) { return !context.isCancelled(); });
     std::set<std::pair<std::size_t, std::size_t>> posed;
-    for (const PatchSighting& sighting : collectSightings(measurements.skin, layout, shapes, pixels)) {
-        if (sighting.leds.size() >= static_cast<std::size_t>(options.minInliers))
-            posed.insert({sighting.view, sighting.patch});
+    for (std::size_t s = 0; s < sure.size(); ++s) {
+        if (isPosed[s] != 0)
+            posed.insert({sure[s].view, sure[s].patch});
     }
     const Spots spots = spotsOf(measurements, layout, pixels, posed);
     PatchPoseOptions careful = options;
-    constexpr int kFewest = 6;  // three make a pose, and of many spots a fourth lies near it by chance
-    careful.minInliers = std::max(kFewest, options.minInliers);
+    careful.minInliers = std::max(static_cast<int>(kFewest), options.minInliers);
     careful.maxCandidates = std::max(4, options.maxCandidates);
-    std::vector<ChosenSpot> chosen;
     auto doubtful = collectSightings(measurements.skin, layout, shapes, spots.pixels);
-    for (PatchSighting& sighting : doubtful) {
-        const auto moduleOf = [&](std::size_t i) { return spots.pixels[sighting.observations[i]].module; };
-        for (std::size_t i = 1; i < sighting.leds.size(); ++i)
-            sighting.leds[i].isAlternative = moduleOf(i) == moduleOf(i - 1);
-        const auto poses = estimatePatchPoses(sighting.leds, measurements.camera, careful);
-        if (!poses)
-            continue;
-        for (const std::size_t i : agreedOn(sighting.leds, *poses, options.maxResidual_px)) {
-            const Undetected* undetected = spots.undetected[sighting.observations[i]];
+    std::vector<std::vector<std::size_t>> agreed(doubtful.size());
+    const auto moduleOf = [&](const PatchSighting& sighting, std::size_t i) {
+        return spots.pixels[sighting.observations[i]].module;
+    };
+    forEachInParallel(
+        doubtful.size(), 1,
+        [&](std::size_t s) {
+            std::vector<LedCorrespondence>& leds = doubtful[s].leds;
+            for (std::size_t i = 1; i < leds.size(); ++i)
+                leds[i].isAlternative = moduleOf(doubtful[s], i) == moduleOf(doubtful[s], i - 1);
+            const auto poses = estimatePatchPoses(leds, measurements.camera, careful);
+            if (poses && !isMirrorSymmetric(leds, poses->front(), options.shapeSigma))
+                agreed[s] = agreedOn(leds, *poses, options.maxResidual_px);
+        },
+        [&](std::size_t s) {
+            context.report(Sentence::saying("which of several spots"),
+                           static_cast<double>(s) / static_cast<double>(doubtful.size()));
+            return !context.isCancelled();
+        });
+    std::vector<ChosenSpot> chosen;
+    for (std::size_t s = 0; s < doubtful.size(); ++s) {
+        for (const std::size_t i : agreed[s]) {
+            const Undetected* undetected = spots.undetected[doubtful[s].observations[i]];
             if (undetected == nullptr)
                 continue;
             const auto spot =
                 std::find_if(undetected->spots.begin(), undetected->spots.end(),
-                             [&](const SpotChoice& choice) { return choice.pixel == sighting.leds[i].pixel; });
-            chosen.push_back({sighting.view, moduleOf(i), *spot, whyTaken(*undetected)});
+                             [&](const SpotChoice& choice) { return choice.pixel == doubtful[s].leds[i].pixel; });
+            chosen.push_back({doubtful[s].view, moduleOf(doubtful[s], i), *spot, whyTaken(*undetected)});
         }
     }
     return chosen;

@@ -171,12 +171,17 @@ void dropRejectedSpots(BodySolution& solution) {
     BodyEstimate& estimate = solution.estimate;
     // They were added one after the other: from the last on, those before keep their places.
     for (auto verdict = estimate.spots.rbegin(); verdict != estimate.spots.rend(); ++verdict) {
-        if (!verdict->pixel || !estimate.rejected[*verdict->pixel])
+        if (!verdict->pixel)
+            continue;
+        // What has no pose is never judged.
+        const Sentence why = !solution.solved.T_r_v[verdict->view]     ? Sentence::saying("its view has no pose")
+                             : !solution.solved.T_r_u[verdict->module] ? Sentence::saying("its module has no pose")
+                                                                       : estimate.rejectedReason[*verdict->pixel];
+        if (why.empty() && !estimate.rejected[*verdict->pixel])
             continue;
         const std::size_t at = *verdict->pixel;
         const auto offset = static_cast<std::ptrdiff_t>(at);
-        verdict->reason = Sentence::saying("a spot that blinks its word was taken and did not stand: {}",
-                                           estimate.rejectedReason[at]);
+        verdict->reason = Sentence::saying("a spot that blinks its word was taken and did not stand: {}", why);
         verdict->pixel.reset();
         solution.input.pixels.erase(solution.input.pixels.begin() + offset);
         estimate.rejected.erase(estimate.rejected.begin() + offset);

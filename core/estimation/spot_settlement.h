@@ -41,7 +41,8 @@ struct SpotOptions {
 /// From here on the spot counts as a detection like any other.
 void takeSpot(BodySolution& solution, const LedInView& led, const SpotChoice& spot, const Sentence& reason);
 
-/// Spots that were taken and have been rejected or set aside since count as open again.
+/// Spots that were taken and have been rejected or set aside since, or whose view or module has no pose, count as open
+/// again.
 void dropRejectedSpots(BodySolution& solution);
 
 /// Detections that were taken from spots before, put back after `solution.input.pixels` was filled anew from

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
+#include "core/estimation/spot_settlement.h"
 #include "core/estimation/stage_clock.h"
 #include "core/geometry/statistics.h"
 
@@ -78,7 +80,7 @@ tl::expected<BodySolution, CalibrationError> solveRound(const Measurements& meas
     BodySolution solution{std::move(*initial), {}, {}, options.adjustment, {}};
     BodyEstimate& estimate = solution.estimate;
     estimate.method = "sturdy";
-    estimate.spots = std::move(solution.spots);
+    estimate.spots = std::exchange(solution.spotsByShape, {});
     estimate.rejected.assign(solution.input.pixels.size(), false);
     estimate.rejectedReason.resize(solution.input.pixels.size());
     estimate.setAside.resize(solution.input.pixels.size());
@@ -149,6 +151,7 @@ tl::expected<BodyModel, CalibrationError> calibrateSturdy(const Measurements& me
     auto solution = solveSturdily(measurements, gravity, history, options, context);
     if (!solution)
         return tl::unexpected(solution.error());
+    dropRejectedSpots(*solution);
     return describeSolution(std::move(*solution), options.initial.pose);
 }
 

@@ -92,8 +92,10 @@ ScanScore scoreOf(const World& world, const ViewDetections& view, std::span<cons
         const double error = distanceTo(placesOfAll[u], pixel);
         return error > ScanScore::kElsewhere_px || (error > kNear_px && isNearerToAnother(u, pixel, error));
     };
+    std::vector<bool> isTaken(visible.size(), false);
     for (const LedDetection& one : taken) {
         const std::size_t u = index.at(one.module);
+        isTaken[u] = true;
         if (isWrong(u, one.pixel))
             ++result.wrong;
         else if (visible[u])
@@ -120,7 +122,7 @@ ScanScore scoreOf(const World& world, const ViewDetections& view, std::span<cons
         const bool handedOn = std::any_of(missing.spots.begin(), missing.spots.end(), [&](const SpotChoice& spot) {
             return distanceTo(placesOfAll[u], spot.pixel) <= ScanScore::kElsewhere_px;
         });
-        result.choices += visible[u] && handedOn ? 1U : 0U;
+        result.choices += visible[u] && handedOn && !isTaken[u] ? 1U : 0U;
     }
     return result;
 }

@@ -17,7 +17,7 @@ struct ScanScore {
     std::size_t visible = 0;   ///< modules that face the camera, in the picture and not hidden by the body
     std::size_t found = 0;     ///< of these, where they are
     std::size_t choices = 0;   ///< of these, not found, but among the spots that were handed on to choose from
-    std::size_t settled = 0;   ///< of these, where the body took the LED from them
+    std::size_t settled = 0;   ///< visible, and taken from such spots by the body, which are then none to choose from
     std::size_t wrong = 0;     ///< modules that were found, or taken by the body, more than `kElsewhere_px` off, nearer
                                ///< to another module's LED than to their own, or although the camera sees no light of
                                ///< theirs

@@ -71,6 +71,8 @@ class StudiedScan {
         std::vector<LedDetection> taken;
         if (hasMirror(what_.disturbance))
             taken = spotsTakenByBody(world_, *view, context);
+        if (context.isCancelled())
+            return {};
         ScanScore result = scoreOf(world_, *view, taken, bounds(*view));
         result.refused = isRefused_ ? 1 : 0;
         result.frames = frames_.size();

@@ -22,6 +22,12 @@ std::set<ModuleId> missingIn(const ViewDetections& view) {
     return missing;
 }
 
+bool isMostlyOutOfSight(const ViewDetections& view) {
+    const auto unseen = std::count_if(view.undetected.begin(), view.undetected.end(),
+                                      [](const Undetected& one) { return one.cause == Undetected::Cause::OutOfSight; });
+    return 2 * static_cast<std::size_t>(unseen) > view.undetected.size();
+}
+
 /// Some of those that were found, far apart: one, and each other is the farthest from those before it. Not always the
 /// same: who is too close to one would never be told apart from it.
 std::vector<ModuleId> anchorsIn(const ViewDetections& view, std::size_t most, std::size_t one) {
@@ -97,9 +103,10 @@ std::optional<LitSets> FurtherLooks::next(const ViewDetections& view) {
     foundInTurn_ += lastWanted_ - wanted.size();
     if (isOpen)
         left_.insert(left_.end(), wanted.begin(), wanted.end());
-    // Where many are looked for in vain it is the room that hides them, and not each other's light.
+    // Where many are looked for in vain, and hardly any light of theirs is seen, it is the room that hides them, and
+    // not each other's light.
     constexpr std::size_t kMany = 20;
-    const bool isHopeless = foundInTurn_ == 0 && (atATime_ == 1 || inTurn_ > kMany);
+    const bool isHopeless = foundInTurn_ == 0 && (atATime_ == 1 || (inTurn_ > kMany && isMostlyOutOfSight(view)));
     if (looks_ > 0 && waiting_.empty() && (isSpoilt || !isHopeless)) {
         atATime_ /= isSpoilt ? 1 : partsFor(foundInTurn_, inTurn_);
         beginTurn(std::exchange(left_, {}));

@@ -25,8 +25,8 @@ struct FurtherLookOptions {
 /// quarter, else a quarter as many; when all have had their turn, those that are left once more. LEDs that are too
 /// close together are so told apart at last, and which pictures a flash spoils is another lot. Those of a look that
 /// leaves nothing unexplained are out of sight, and are not looked for again, nor are those that were alone, nor many
-/// of whom a whole turn found none: then it is the room that hides them. What a knock spoilt is scanned as it was
-/// before.
+/// of whom a whole turn found none, and saw no light of most: then it is the room that hides them. What a knock spoilt
+/// is scanned as it was before.
 class FurtherLooks {
   public:
     /// @param seed  of the words and of who is looked for together

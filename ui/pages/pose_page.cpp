@@ -66,7 +66,6 @@ PosePage::PosePage(PosePresenter& presenter, QWidget* parent)
     buttons->addWidget(capture_);
     turn_->setObjectName(QStringLiteral("turn"));
     turn_->setToolTip(tr("The simulated arm turns until the dot lies in the ring"));
-    turn_->setVisible(presenter.hasHands());
     buttons->addWidget(turn_);
     buttons->addStretch();
     side->addLayout(buttons);
@@ -191,6 +190,7 @@ void PosePage::refresh() {
     verdict_->setProperty(isEnough ? "attention" : "good", false);
     verdict_->style()->unpolish(verdict_);
     verdict_->style()->polish(verdict_);
+    turn_->setVisible(presenter_.hasHands());
     setPrimary(turn_, !isEnough);
     const bool hasTarget = presenter_.target().has_value();
     switch (presenter_.state().phase) {

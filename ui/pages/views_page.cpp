@@ -33,7 +33,6 @@ ViewsPage::ViewsPage(ViewsPresenter& presenter, ScanPresenter& scan, ViewPreview
     body().addWidget(reason_);
     auto* buttons = new QHBoxLayout;
     move_->setObjectName(QStringLiteral("moveCamera"));
-    move_->setVisible(presenter.hasHands());
     move_->setToolTip(tr(
         "The simulated rig carries its camera to the suggested place, shown in the 3D view; while patches are missing, "
         "to the next of its own places"));
@@ -113,6 +112,7 @@ void ViewsPage::refresh() {
     scanHere_->setStatusTip(obstacle);
     // A second view from the same place tells next to nothing.
     const bool isMoveNext = presenter_.hasHands() && !hasMoved_;
+    move_->setVisible(presenter_.hasHands());
     setPrimary(move_, isMoveNext && !isEnough);
     setPrimary(scanHere_, !isMoveNext && !isEnough);
     showHint();

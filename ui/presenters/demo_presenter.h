@@ -63,7 +63,10 @@ class DemoPresenter : public QObject {
     /// In the order of places.
     [[nodiscard]] std::vector<std::pair<std::size_t, Trace>> traces(std::size_t whiles) const;
 
-    [[nodiscard]] bool canTouch() const { return workbench_.hands && workbench_.hands->touch; }
+    [[nodiscard]] bool canTouch() const {
+        const RigHands* hands = workbench_.handsOnSkin();
+        return hands != nullptr && hands->touch;
+    }
     /// N, of touch().
     void setForce(double force);
     [[nodiscard]] double force() const { return force_; }

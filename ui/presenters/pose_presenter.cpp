@@ -81,8 +81,8 @@ void PosePresenter::captureNow() {
 }
 
 void PosePresenter::turnToTarget() {
-    if (workbench_.hands && reference_ && target())
-        workbench_.hands->turnBody(*reference_, *target());
+    if (const RigHands* hands = workbench_.handsOnSkin(); hands != nullptr && reference_ && target())
+        hands->turnBody(*reference_, *target());
 }
 
 std::optional<double> PosePresenter::movement() const {

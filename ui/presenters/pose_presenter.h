@@ -36,7 +36,7 @@ class PosePresenter : public QObject {
     void captureNow();
     /// Where a rig has hands: they turn the body to the target.
     void turnToTarget();
-    [[nodiscard]] bool hasHands() const { return workbench_.hands.has_value(); }
+    [[nodiscard]] bool hasHands() const { return workbench_.handsOnSkin() != nullptr; }
 
     [[nodiscard]] const PoseCapture& state() const { return state_; }
     /// m/s^2; nothing before the first half second.

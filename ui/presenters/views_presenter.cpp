@@ -111,18 +111,19 @@ bool ViewsPresenter::goesToTarget() const {
 }
 
 void ViewsPresenter::moveCamera() {
-    if (!workbench_.hands)
+    const RigHands* hands = workbench_.handsOnSkin();
+    if (hands == nullptr)
         return;
     const auto& solution = workbench_.session().solution();
     if (goesToTarget() && solution) {
         for (const BodyModule& module : solution->body.modules) {
             if (!module.T_body_module)
                 continue;
-            workbench_.hands->moveCamera(module.id, module.T_body_module->inverse() * *target());
+            hands->moveCamera(module.id, module.T_body_module->inverse() * *target());
             return;
         }
     }
-    workbench_.hands->moveCameraOn();
+    hands->moveCameraOn();
 }
 
 }  // namespace skincal

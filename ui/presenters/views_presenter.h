@@ -39,7 +39,7 @@ class ViewsPresenter : public QObject {
     /// Where the camera should stand, body frame; nothing while nothing is placed or nothing is forecast.
     [[nodiscard]] std::optional<Isometry3d> target() const;
 
-    [[nodiscard]] bool hasHands() const { return workbench_.hands.has_value(); }
+    [[nodiscard]] bool hasHands() const { return workbench_.handsOnSkin() != nullptr; }
     /// Whether moveCamera() goes to the target: forecasts know placed patches only.
     [[nodiscard]] bool goesToTarget() const;
     /// The rig's camera goes there, or else on to another of its own places, as a person walks round the body to find

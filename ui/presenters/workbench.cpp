@@ -4,6 +4,16 @@
 
 namespace skincal {
 
+const RigHands* Workbench::handsOnSkin() const {
+    if (!hands)
+        return nullptr;
+    const auto& modules = session_.measured().skin.modules;
+    const bool areTheirs = std::all_of(modules.begin(), modules.end(), [&](const SkinModule& module) {
+        return !hands->holds || hands->holds(module.id);
+    });
+    return areTheirs ? &*hands : nullptr;
+}
+
 void Workbench::chooseSkin(std::size_t offer) {
     setSkinReady(false);
     skin_ = skinOffers.at(offer).make();

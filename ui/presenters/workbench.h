@@ -29,6 +29,8 @@ struct Offer {
 /// Hands that do what the window asks for: only a simulated rig has them. Relative to a module, since nobody but the
 /// rig knows where its body frame is.
 struct RigHands {
+    /// Whether it is a module of the rig's body: the document may be of another skin.
+    std::function<bool(ModuleId)> holds;
     /// Turns the body until this direction of the module points against gravity.
     std::function<void(ModuleId, const Vector3d& up_u)> turnBody;
     /// Puts the camera there.
@@ -60,6 +62,8 @@ class Workbench : public QObject {
     std::vector<Offer<SkinDevice>> skinOffers;
     std::vector<Offer<FrameSource>> cameraOffers;
     std::optional<RigHands> hands;
+    /// Null where there are none, or any module of the document is not of their body.
+    [[nodiscard]] const RigHands* handsOnSkin() const;
 
     /// Null before a device was chosen. Choosing another destroys the one before.
     [[nodiscard]] SkinDevice* skin() const { return skin_.get(); }

@@ -25,6 +25,7 @@ RigOffers offerRig(Workbench& workbench, SimulatedRig& rig) {
         return rig.world().T_r_u.at(rig.world().skin.indexById().at(module));
     };
     RigHands hands;
+    hands.holds = [modules = rig.world().skin.indexById()](ModuleId module) { return modules.contains(module); };
     hands.turnBody = [&rig, poseOf](ModuleId module, const Vector3d& up_u) {
         rig.turnBody(poseOf(module).linear() * up_u);
     };
@@ -36,9 +37,7 @@ RigOffers offerRig(Workbench& workbench, SimulatedRig& rig) {
         rig.moveCamera(rig.suggestedViews()[place]);
     };
     hands.touch = [&rig, poseOf](ModuleId module, const Vector3d& point_u, double force) {
-        // The document may be of another skin.
-        if (rig.world().skin.indexById().contains(module))
-            rig.touch(poseOf(module) * point_u, force);
+        rig.touch(poseOf(module) * point_u, force);
     };
     hands.release = [&rig] { rig.release(); };
     hands.holdBoard = [&rig](const BoardPlan& plan) { rig.holdBoard(plan); };

@@ -28,6 +28,7 @@ class Desk {
             return rig.world().T_r_u.at(rig.world().skin.indexById().at(module));
         };
         RigHands hands;
+        hands.holds = [modules = rig.world().skin.indexById()](ModuleId module) { return modules.contains(module); };
         hands.turnBody = [this, poseOf](ModuleId module, const Vector3d& up_u) {
             rig.turnBody(poseOf(module).linear() * up_u);
         };

@@ -43,6 +43,26 @@ TEST(PosePresenter, CapturesByItselfAtRestAndOnlyThen) {
     }
 }
 
+TEST(PosePresenter, HandsDoNotReachForASkinThatIsNotTheirs) {
+    Desk desk;
+    EXPECT_TRUE(desk.pose.hasHands()) << "who has no skin yet may connect theirs";
+    ASSERT_TRUE(desk.connectSkin());
+    EXPECT_TRUE(desk.pose.hasHands());
+    desk.pose.setActive(true);
+    ASSERT_TRUE(waitFor([&] { return desk.pose.target().has_value(); }));
+    Skin other = desk.rig.world().skin;
+    for (SkinModule& module : other.modules)
+        module.id.value += 100'000;
+    other.links.clear();
+    other.hostLinks.clear();
+    desk.session().adoptSkin(other);
+    EXPECT_FALSE(desk.pose.hasHands());
+    EXPECT_FALSE(desk.views.hasHands());
+    desk.pose.turnToTarget();
+    desk.views.moveCamera();
+    EXPECT_TRUE(desk.rig.isBodyAtRest());
+}
+
 TEST(PosePresenter, RefusesToCaptureABodyThatMoves) {
     Desk desk;
     ASSERT_TRUE(desk.connectSkin());

@@ -294,6 +294,23 @@ TEST(FurtherLooks, GoOnUntilAllAreFoundOrOutOfSight) {
     }
 }
 
+// Thirty that are looked for at once in vain: in each other's light if it is seen, else behind something.
+TEST(FurtherLooks, GoOnWithFewerWhereLightOfAllIsSeen) {
+    for (const Cause cause : {Cause::NotAnLed, Cause::OutOfSight}) {
+        ViewDetections view;
+        for (std::uint32_t module = 0; module < 40; ++module)
+            view.found.push_back(at(module, 20.0 * module, 10));
+        for (std::uint32_t module = 40; module < 70; ++module)
+            view.undetected.push_back(missing(module, cause));
+        view.unexplained = 30;
+        FurtherLooks further(1);
+        ASSERT_TRUE(further.next(view));
+        EXPECT_EQ(further.wanted().size(), 30U);
+        EXPECT_EQ(further.next(view).has_value(), cause == Cause::NotAnLed);
+        EXPECT_LT(further.wanted().size(), 10U);
+    }
+}
+
 TEST(FurtherLooks, TakeNoMorePicturesThanAreAllowed) {
     Crowd crowd(400, 30, 1);
     FurtherLookOptions options;

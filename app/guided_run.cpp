@@ -215,6 +215,14 @@ void GuidedRun::connected() {
         return stop(QStringLiteral("the recording is of another skin"));
     skin_ = measured.skin;
     say(QStringLiteral("%1 modules, %2 links").arg(measured.skin.modules.size()).arg(measured.skin.links.size()));
+    if (const auto& gone = connect_.gone(); !gone.empty()) {
+        QStringList numbers;
+        for (const ModuleId module : gone)
+            numbers << QString::number(module.value);
+        say(QStringLiteral("%1 of the recording's modules do not answer: %2")
+                .arg(gone.size())
+                .arg(numbers.join(QStringLiteral(", "))));
+    }
     captured_ = static_cast<int>(posesOf(measured, workbench_.session().decisions()).size());
     scanned_ = static_cast<int>(measured.views.size());
     if (captured_ > 0)

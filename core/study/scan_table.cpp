@@ -12,10 +12,13 @@ std::string percent(std::size_t part, std::size_t whole) {
 }
 
 std::string line(const std::string& what, const ScanScore& score) {
-    return fmt::format("| {} | {} | {} | {} | {} | {} | {:.3f} | {:.2f} | {} |\n", what, score.visible,
+    const auto figure = [](std::size_t of, double value, int digits) {
+        return of > 0 ? fmt::format("{:.{}f}", value, digits) : "–";
+    };
+    return fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", what, score.visible,
                        percent(score.found, score.visible), percent(score.choices, score.visible),
-                       percent(score.settled, score.visible), score.wrong, score.rms_px(), score.rmsSigmas(),
-                       score.sharp > 0 ? fmt::format("{:.2f}", score.rmsBounds()) : "–");
+                       percent(score.settled, score.visible), score.wrong, figure(score.found, score.rms_px(), 3),
+                       figure(score.found, score.rmsSigmas(), 2), figure(score.sharp, score.rmsBounds(), 2));
 }
 
 }  // namespace

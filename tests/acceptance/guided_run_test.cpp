@@ -168,6 +168,25 @@ TEST(GuidedRun, GoesOnWithWhatWasBrokenOff) {
     EXPECT_EQ(readRecording(desk.file("desk.skinrec").toStdString())->views.size(), 2U);
 }
 
+TEST(GuidedRun, NamesWhoDoesNotAnswerAnyMore) {
+    DeskWithWires desk("demo");
+    const auto goOn = [&](const QString& dead) {
+        return desk.run({"run", "--device",
+                         QStringLiteral("exec:" SKINCAL_PROGRAM " virtual-skin plane --stdio ") + dead, "--intrinsics",
+                         desk.lensFile(), "-o", desk.file("plane.skinrec"), "--poses", "1", "--views", "0", "--on-pose",
+                         "true", "--resume"});
+    };
+    EXPECT_NE(goOn({}), 2) << desk.output;
+    EXPECT_FALSE(desk.said("do not answer")) << desk.output;
+    // One in the patch that a cable leads to, farthest from it.
+    const World world = buildWorld(*findScenario("plane"), 1);
+    const auto last = std::count(world.patchOf.begin(), world.patchOf.end(), world.patchOf.front()) - 1;
+    const auto dead = world.skin.modules[static_cast<std::size_t>(last)].id.value;
+    EXPECT_NE(goOn(QStringLiteral("--dead %1").arg(dead)), 2) << desk.output;
+    EXPECT_TRUE(desk.said("1 of the recording's modules do not answer: ")) << desk.output;
+    EXPECT_TRUE(desk.said("1 poses and 0 views are there already")) << desk.output;
+}
+
 TEST(GuidedRun, SaysWhatIsMissing) {
     DeskWithWires desk("demo");
     const QStringList common{"run", "-o", desk.file("desk.skinrec"), "--intrinsics", desk.lensFile()};

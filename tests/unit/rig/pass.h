@@ -12,9 +12,10 @@ inline void pass(RigClock& clock, RigClock::Time passed) {
     const RigClock::Time end = clock.now() + passed;
     // Asked for twice: after what others have asked for by then for the same time.
     clock.at(end, &loop, [&] { clock.at(end, &loop, [&loop] { loop.quit(); }); });
-    // Inside the handler of a posted event, GLib's dispatcher sleeps on whatever was posted together with that one until
-    // something else is posted: for ever, where that is the picture that holds the clock.
-    QMetaObject::invokeMethod(&loop, [] {}, Qt::QueuedConnection);
+    // Inside the handler of a posted event, GLib's dispatcher sleeps on whatever was posted together with that one
+    // until something else is posted: for ever, where that is the picture that holds the clock.
+    QMetaObject::invokeMethod(
+        &loop, [] {}, Qt::QueuedConnection);
     loop.exec();
 }
 

@@ -63,7 +63,7 @@ void attachRest(InitialEstimate& estimate, const std::vector<PatchSighting>& sig
                 const InitialEstimateOptions& options);
 
 /// The paper's pipeline without its weaknesses:
-///   1. patch shapes by least squares over gravity and link points, accelerometers calibrated on the way
+///   1. patch shapes by least squares over gravity and link points, accelerometers calibrated on the way;
 ///      where a view has hardly a sure LED of a patch, spots are taken that its shape explains (chooseSpotsByShape)
 ///   2. every pose that explains a patch in a view (two for a flat one), decided by gravity and by the other views
 ///   3. body from a spanning tree over all views by quality, loops closed by rotation and translation averaging

@@ -41,6 +41,10 @@ std::string_view name(Disturbance disturbance) {
     return named(disturbance).name;
 }
 
+bool hasMirror(Disturbance disturbance) {
+    return disturbance == Disturbance::Reflection || disturbance == Disturbance::Hidden;
+}
+
 std::optional<Disturbance> findDisturbance(std::string_view name) {
     for (const Named& entry : disturbances()) {
         if (entry.name == name)

@@ -24,6 +24,8 @@ enum class Disturbance {
     Crowding,    ///< px between the two LEDs that are nearest to each other
 };
 [[nodiscard]] std::string_view name(Disturbance disturbance);
+/// Whether LEDs show twice, so that what the picture leaves open is asked of the body.
+[[nodiscard]] bool hasMirror(Disturbance disturbance);
 [[nodiscard]] std::optional<Disturbance> findDisturbance(std::string_view name);
 /// Strengths that make a curve of it, up to more than any scan can bear.
 [[nodiscard]] const std::vector<double>& strengthsOf(Disturbance disturbance);

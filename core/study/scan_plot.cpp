@@ -81,9 +81,8 @@ std::string panel(Disturbance disturbance, const std::vector<const ScanStudyRow*
         if (std::find(strengths.begin(), strengths.end(), row->what.strength) == strengths.end())
             strengths.push_back(row->what.strength);
     }
-    const bool hasMirror = disturbance == Disturbance::Reflection || disturbance == Disturbance::Hidden;
     std::string svg = text(kLeft, 18, "start", std::string(name(disturbance)), " font-weight=\"bold\"");
-    if (hasMirror)
+    if (hasMirror(disturbance))
         svg += text(kPanelWidth - kRight, 18, "end", "found, or taken by the body");
     const double bottom = kPanelHeight - kBottom;
     for (const int share : {0, 50, 100}) {

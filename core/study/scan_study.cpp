@@ -25,10 +25,6 @@ bool isSteady(Disturbance disturbance) {
            disturbance == Disturbance::Focus || disturbance == Disturbance::Crowding;
 }
 
-bool hasMirror(Disturbance disturbance) {
-    return disturbance == Disturbance::Reflection || disturbance == Disturbance::Hidden;
-}
-
 /// A scan of the study's view, looks added one after the other.
 class StudiedScan {
   public:
